@@ -17,7 +17,6 @@ pub struct Blended {
 }
 
 impl Blended {
-    /// Through these points.
     pub fn new(points: impl Iterator<Item = (f64, f64)>) -> Self {
         let (x, y) = points.unzip();
         Blended { x, y }

@@ -6,18 +6,15 @@ use std::path::{Path, PathBuf};
 use serde::de::DeserializeOwned;
 
 use crate::cells::{defused, quoted};
-use crate::error::{Error, InputError, Result};
+use crate::error::{Error, InputError, Result, fail_if};
 use crate::units::shown::shown;
 use crate::units::us::{Renamed, System, renamed};
 use crate::units::words::in_units;
 
-/// Significant digits of a number at the least.
 const DIGITS: usize = 10;
-
 /// Remedy for files of results that are not as they were written.
 pub const AGAIN: &str = "the folder is damaged: copy it again, or rerun the case";
 
-/// How numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Digits {
     /// With 10 to 15 significant digits: unit conversion may disturb the last of the 17 that a double carries.
@@ -44,9 +41,7 @@ struct Column {
 /// Columns of equal length under the name of their file; an empty cell is NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// Name of the file, or the path that it was read from.
     pub file: PathBuf,
-    /// Units of the text that it was read from.
     pub units: System,
     columns: Vec<Column>,
 }
@@ -67,12 +62,10 @@ impl Table {
         self.with(name, Cells::numbers(values, Digits::Few))
     }
 
-    /// Adds numbers that read back bit for bit.
     pub fn exact(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = impl Into<Option<f64>>>) -> Self {
         self.with(name, Cells::numbers(values, Digits::All))
     }
 
-    /// Adds whole numbers.
     pub fn counts(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = usize>) -> Self {
         self.with(name, Cells::Numbers(values.into_iter().map(|count| count as f64).collect(), Digits::None))
     }
@@ -82,7 +75,6 @@ impl Table {
         self.words(name, values.into_iter().map(|words| defused(&words.to_string()).into_owned()))
     }
 
-    /// Adds text of this program.
     pub fn words<W: ToString>(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = W>) -> Self {
         self.with(name, Cells::Words(values.into_iter().map(|words| words.to_string()).collect()))
     }
@@ -199,7 +191,6 @@ impl Table {
         text
     }
 
-    /// The number that stands in a row under a name.
     fn sibling(&self, name: &str, row: usize) -> Option<f64> {
         self.columns.iter().find(|column| column.name == name)?.cells.number(row)
     }
@@ -219,10 +210,8 @@ impl Table {
                 columns = record.iter().map(|name| (name.to_owned(), Vec::new())).collect();
                 continue;
             }
-            if record.len() != columns.len() {
-                let problem = format!("has {} cells under {} columns", record.len(), columns.len());
-                return Err(table.bad(at(record.position()), None, None, &problem));
-            }
+            let problem = || format!("has {} cells under {} columns", record.len(), columns.len());
+            fail_if!(record.len() != columns.len(), table.bad(at(record.position()), None, None, &problem()));
             columns.iter_mut().zip(&record).for_each(|((_, cells), cell)| cells.push(cell.to_owned()));
         }
         table.columns =
@@ -231,7 +220,6 @@ impl Table {
         Ok(table)
     }
 
-    /// Columns in US units in metric ones.
     fn go_metric(&mut self) {
         let changes: Vec<(usize, Renamed, Vec<f64>)> = (0..self.columns.len())
             .filter_map(|place| {
@@ -288,7 +276,6 @@ impl Cells {
     }
 }
 
-/// The number of a cell, NaN of an empty one.
 fn number(cell: &str) -> Option<f64> {
     if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok().filter(|value: &f64| value.is_finite()) }
 }
@@ -303,7 +290,6 @@ pub fn number_text(value: f64) -> String {
     rounded_text(value, 14)
 }
 
-/// With so many digits behind the first.
 fn rounded_text(value: f64, digits: usize) -> String {
     placed(value, &format!("{value:.digits$e}"))
 }

@@ -18,11 +18,9 @@ pub enum Error {
     /// A file could not be read or written (exit code 4).
     #[error("{}: {action}: {source}", path.display())]
     File {
-        /// The file or folder in question.
         path: PathBuf,
         /// What was tried, for example "cannot read" (reads well after the path and a colon).
         action: &'static str,
-        /// What the operating system answered.
         #[source]
         source: std::io::Error,
     },
@@ -71,7 +69,6 @@ impl Error {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct InputError {
     pub file: Option<PathBuf>,
-    /// Line of the file, counted from 1.
     pub line: Option<usize>,
     /// Key (`specimen.crack_length_mm`) or column (`cycles`).
     pub key: Option<String>,
@@ -85,7 +82,6 @@ pub struct InputError {
 
 /// Mistakes of one file that are told at once; the rest is counted.
 const TOLD_AT_ONCE: usize = 10;
-
 /// Most characters of a key or value that a message repeats: what a user gave may be a whole file.
 pub const VALUE_MAX: usize = 200;
 /// Most characters of a sentence of a message, which may repeat names.
@@ -151,7 +147,6 @@ pub fn input(key: &str, value: impl fmt::Display, problem: impl Into<String>, re
     }))
 }
 
-/// Input error about a key that is missing or a combination of keys.
 pub fn input_missing(key: &str, problem: impl Into<String>, remedy: impl Into<String>) -> Error {
     Error::Input(Box::new(InputError {
         key: Some(key.to_owned()),
@@ -160,3 +155,20 @@ pub fn input_missing(key: &str, problem: impl Into<String>, remedy: impl Into<St
         ..InputError::default()
     }))
 }
+
+/// Returns an error where something is wrong: `fail_if!(length <= 0.0, input(KEY, length, problem, remedy));`, or
+/// `fail_if!(let Some(second) = columns.next(), fault(second));`.
+#[macro_export]
+macro_rules! fail_if {
+    (let $wrong:pat = $value:expr, $error:expr) => {
+        if let $wrong = $value {
+            return Err($error);
+        }
+    };
+    ($wrong:expr, $error:expr) => {
+        if $wrong {
+            return Err($error);
+        }
+    };
+}
+pub use crate::fail_if;

@@ -10,21 +10,13 @@
 pub struct KindLine {
     /// Key of the input file, for example `model.bond_law`.
     pub key: &'static str,
-    /// Value to write there.
     pub name: &'static str,
     pub meaning: &'static str,
 }
 
-/// Remedy for a name that is none of these.
-pub fn use_one_of(lines: &[KindLine]) -> String {
-    format!("use one of: {}", lines.iter().map(|line| line.name).collect::<Vec<_>>().join(", "))
-}
-
 /// What [`kinds!`](crate::kinds!) declares.
 pub trait Named: Sized {
-    /// Lines of `perilife list`.
     fn lines() -> Vec<KindLine>;
-    /// The kind of a name.
     fn find(text: &str) -> Option<Self>;
 }
 
@@ -35,7 +27,7 @@ pub trait Named: Sized {
 /// is answered with the known ones.
 #[macro_export]
 macro_rules! kinds {
-    ($(#[$outer:meta])* pub enum $Kind:ident for $key:literal { $($(#[$inner:meta])* $Variant:ident = $name:literal : $meaning:literal),+ $(,)? }) => {
+    ($($(#[$outer:meta])* pub enum $Kind:ident for $key:literal { $($(#[$inner:meta])* $Variant:ident = $name:literal : $meaning:literal),+ $(,)? })+) => { $(
         $(#[$outer])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         pub enum $Kind { $($(#[$inner])* #[doc = $meaning] $Variant),+ }
@@ -45,14 +37,13 @@ macro_rules! kinds {
             pub const ALL: &'static [$Kind] = &[$($Kind::$Variant),+];
             /// Key of the input file that takes these names.
             pub const KEY: &'static str = $key;
-            /// Name in input and result files.
             pub fn name(self) -> &'static str { match self { $($Kind::$Variant => $name),+ } }
             pub fn meaning(self) -> &'static str { match self { $($Kind::$Variant => $meaning),+ } }
             pub fn all() -> impl Iterator<Item = Self> { Self::ALL.iter().copied() }
         }
 
         $crate::kinds!(names of $Kind);
-    };
+    )+ };
     ($(#[$outer:meta])* pub struct $Kind:ident of $Description:ident in $all:ident for $key:literal) => {
         $(#[$outer])*
         #[derive(Clone, Copy)]
@@ -62,7 +53,6 @@ macro_rules! kinds {
             /// Key of the input file that takes these names.
             pub const KEY: &'static str = $key;
             pub fn all() -> impl Iterator<Item = Self> { $all.iter().map(|own| $Kind(own)) }
-            /// Name in input and result files.
             pub fn name(self) -> &'static str { self.0.name }
             pub fn meaning(self) -> &'static str { self.0.meaning }
         }
@@ -73,7 +63,6 @@ macro_rules! kinds {
     };
     (names of $Kind:ident) => {
         impl $Kind {
-            /// Lines of `perilife list`.
             pub fn lines() -> Vec<$crate::kinds::KindLine> {
                 Self::all().map(|k| $crate::kinds::KindLine { key: Self::KEY, name: k.name(), meaning: k.meaning() }).collect()
             }
@@ -87,7 +76,7 @@ macro_rules! kinds {
             type Err = $crate::error::Error;
             fn from_str(text: &str) -> std::result::Result<Self, Self::Err> {
                 <Self as $crate::kinds::Named>::find(text).ok_or_else(|| {
-                    let remedy = $crate::kinds::use_one_of(&Self::lines());
+                    let remedy = $crate::keys::meant(None, Self::all().map(|k| k.name()));
                     $crate::error::input(Self::KEY, format!("\"{text}\""), "unknown kind", remedy)
                 })
             }

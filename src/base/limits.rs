@@ -5,16 +5,14 @@
 
 use std::sync::OnceLock;
 
-use crate::error::{Result, input};
+use crate::error::{Result, fail_if, input};
 
-/// The committed table as text.
 pub const TABLE: &str = include_str!("../../data/boundaries.csv");
 pub const COLUMNS: &str = "sweep,method,parameter,is_safe,low,high,bound_percent,version,date";
 
 /// The safe range of a method over one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limit {
-    /// Sweep of `perilife stability`.
     pub sweep: String,
     pub method: String,
     pub parameter: String,
@@ -46,9 +44,7 @@ pub fn parse(text: &str) -> Result<Vec<Limit>> {
     };
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers().map_err(|error| broken(&error, "is not a header"))?.iter().collect::<Vec<_>>().join(",");
-    if header != COLUMNS {
-        return Err(broken(&header, "is not the header of a table of boundaries"));
-    }
+    fail_if!(header != COLUMNS, broken(&header, "is not the header of a table of boundaries"));
     let limit = |row: csv::Result<LimitRow>| {
         let (sweep, method, parameter, is_safe, low, high, bound_percent, version, date) =
             row.map_err(|error| broken(&error, "is not a row of a table of boundaries"))?;
@@ -63,7 +59,6 @@ pub fn all() -> &'static [Limit] {
     READ.get_or_init(|| parse(TABLE).unwrap_or_default())
 }
 
-/// The limit of a method in a sweep, if one was measured.
 pub fn of(sweep: &str, method: &str) -> Option<&'static Limit> {
     all().iter().find(|limit| limit.sweep == sweep && limit.method == method)
 }

@@ -11,7 +11,6 @@ pub struct Line {
 }
 
 impl Line {
-    /// y of the line at x.
     pub fn at(&self, x: f64) -> f64 {
         self.intercept + self.slope * x
     }

@@ -4,7 +4,6 @@
 //! table does (Fritsch and Butland 1984, SIAM J. Sci. Stat. Comput. 5:300). Steps of a table, where one of both stays the same, are
 //! straight.
 
-/// Halvings of an interval of the inverse.
 const HALVINGS: usize = 60;
 
 /// A table of points `[x, y]`, both not falling.
@@ -26,11 +25,7 @@ impl Monotone {
 
     /// Fraction of the way in x from point `before` to the next at which y is reached.
     pub fn fraction(&self, before: usize, y: f64) -> f64 {
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if self.between(before, middle) < y { low = middle } else { high = middle }
-        }
+        let [low, high] = bisected([0.0, 1.0], HALVINGS, |share| self.between(before, share) < y);
         0.5 * (low + high)
     }
 
@@ -69,4 +64,13 @@ impl Monotone {
             (None, None) => 0.0,
         }
     }
+}
+
+/// The ends of an interval that was halved so often towards the place up to which `is_below` holds.
+pub fn bisected([mut low, mut high]: [f64; 2], halvings: usize, is_below: impl Fn(f64) -> bool) -> [f64; 2] {
+    for _ in 0..halvings {
+        let middle = 0.5 * (low + high);
+        if is_below(middle) { low = middle } else { high = middle }
+    }
+    [low, high]
 }

@@ -62,7 +62,6 @@ pub fn integrate(f: impl Fn(f64) -> f64, from: f64, to: f64, tolerance: f64) -> 
     sum
 }
 
-/// Both rules on one panel.
 fn panel(f: &impl Fn(f64) -> f64, from: f64, to: f64) -> Integral {
     let (centre, half) = (0.5 * (from + to), 0.5 * (to - from));
     let middle = f(centre);

@@ -2,32 +2,28 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Picture of the damaged plate at one moment.
+/// Picture of the damaged plate at one moment, SI: what every point has at maximum load.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
-    /// Cycles since N = 0.
     pub cycles: f64,
-    /// Crack length, m.
     pub crack_length: f64,
-    /// Displacement (x, y) of every point at maximum load, m.
     pub displacement: Vec<[f64; 2]>,
-    /// Damage φ of every point: fraction of its bonds that are broken, 0 to 1.
+    /// Damage φ: fraction of its bonds that are broken, 0 to 1.
     pub damage: Vec<f64>,
-    /// Least remaining life λ of the intact bonds of every point, 0 to 1; empty where no bonds have one.
+    /// Least remaining life λ of its intact bonds, 0 to 1; empty where no bonds have one.
     pub remaining_life: Vec<f64>,
-    /// Von Mises stress of every point at maximum load, Pa; empty where it is not known.
+    /// Von Mises stress; empty where it is not known.
     pub stress: Vec<f64>,
 }
 
-/// Lattice of a picture.
+/// Lattice rows and columns that hold the body; lengths in m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointGrid {
-    /// Lattice spacing, m; the finest one where there are several.
+    /// The finest one where there are several.
     pub spacing: f64,
-    /// Columns and rows of the lattice that holds the body.
     pub columns: usize,
     pub rows: usize,
-    /// Position of lattice place (0, 0), m.
+    /// Position of lattice place (0, 0).
     pub origin: [f64; 2],
     /// Angle of the lattice rows against x, radians.
     pub angle: f64,
@@ -37,7 +33,6 @@ pub struct PointGrid {
 }
 
 impl PointGrid {
-    /// That of a run without points.
     pub fn none() -> PointGrid {
         PointGrid { spacing: f64::NAN, columns: 0, rows: 0, origin: [0.0; 2], angle: 0.0, point_at: Vec::new() }
     }

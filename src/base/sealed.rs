@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 
-use crate::error::{Error, InputError, Result};
+use crate::error::{Error, InputError, Result, fail_if};
 
 /// Program by which a checkpoint can be taken up.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -13,7 +13,6 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 pub struct Seal {
     /// What a file that does not begin with `magic` is no checkpoint of, in words.
     pub of: &'static str,
-    /// First bytes.
     pub magic: &'static [u8],
     /// Form of what follows; one higher with every change of it, or of what the program does with it.
     pub form: u32,
@@ -41,14 +40,11 @@ impl Seal {
             return Err(refused(format!("written by perilife {other}; this is {VERSION}")));
         }
         let (sum, content) = rest.split_first_chunk::<32>().ok_or_else(damaged)?;
-        if Sha256::digest(content)[..] != sum[..] {
-            return Err(damaged());
-        }
+        fail_if!(Sha256::digest(content)[..] != sum[..], damaged());
         postcard::from_bytes(content).map_err(|_| damaged())
     }
 }
 
-/// A checkpoint that cannot be taken up.
 pub fn refused(problem: impl Into<String>) -> Error {
     Error::Input(Box::new(InputError {
         problem: problem.into(),

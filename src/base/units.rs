@@ -28,7 +28,6 @@ pub const SQRT_INCH: f64 = 0.159_373_774_505_092_3;
 pub const MM_PER_CYCLE: f64 = 1e-3;
 
 /// A place, m, in words: its coordinates in mm.
-#[inline]
 pub fn place_mm(place: [f64; 2]) -> String {
     let [x, y] = place.map(|metres| metres / MM);
     format!("({x:.4}, {y:.4}) mm")
@@ -41,7 +40,6 @@ pub fn given_mm(place: [f64; 2]) -> String {
 }
 
 /// A number in writing that nobody takes its decimal point for a separator of thousands in: 12.345 becomes 12.3450.
-#[inline]
 pub fn unmistakable(number: &str) -> String {
     match number.split_once('.') {
         Some((_, digits)) if digits.len() == 3 => format!("{number}0"),
@@ -50,13 +48,11 @@ pub fn unmistakable(number: &str) -> String {
 }
 
 /// Metres as mm, rounded to six digits for messages.
-#[inline]
 pub fn round_mm(metres: f64) -> f64 {
     (metres / MM * 1e6).round() / 1e6
 }
 
 /// Nine significant digits for messages: hides the last bits that unit conversion leaves.
-#[inline]
 pub fn round_off(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
 }

@@ -10,24 +10,18 @@ use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, Ordering};
 
 use crate::error::{Error, Result};
 
-/// What is being done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Stage {
-    /// Points are laid into the plate.
     Points = 1,
-    /// Bonds are drawn between them.
     Bonds,
-    /// Bonds near the rim are balanced.
     Rim,
-    /// Loads and supports are put on.
     Loads,
     Solver,
     Equilibrium,
 }
 
 impl Stage {
-    /// All, in their order.
     pub const ALL: [Stage; 6] = [Stage::Points, Stage::Bonds, Stage::Rim, Stage::Loads, Stage::Solver, Stage::Equilibrium];
 
     pub fn words(self) -> &'static str {
@@ -45,7 +39,6 @@ impl Stage {
 /// Shares are kept in parts of so many.
 const PARTS: f64 = 1e6;
 
-/// Where work is, and whether it may go on.
 #[derive(Debug, Default)]
 pub struct Watch {
     stage: AtomicU8,
@@ -109,7 +102,6 @@ pub fn at(stage: Stage, share: f64) -> Result<()> {
     })
 }
 
-/// What work ends with that was asked to.
 const CANCELLED: &str = "the run was canceled";
 
 /// Who watches the work of this thread, for threads that do a part of it.

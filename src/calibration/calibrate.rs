@@ -33,9 +33,7 @@ const SAME_LENGTH: f64 = 1e-9;
 /// A checked calibration file.
 #[derive(Debug, Clone)]
 pub enum Calibration {
-    /// Lives of readings, by the law of Paris.
     Lives(Box<CalibrationCase>),
-    /// Rates, by laws over K.
     Rates(Box<LawCase>),
 }
 
@@ -65,7 +63,6 @@ impl Calibration {
         }
     }
 
-    /// What the user should know.
     pub fn warnings(&self) -> &[String] {
         match self {
             Calibration::Lives(calibration) => &calibration.warnings,
@@ -73,7 +70,6 @@ impl Calibration {
         }
     }
 
-    /// Finds the constants.
     pub fn fit(&self, observer: &dyn Observer) -> Result<Fitted<'_>> {
         Ok(match self {
             Calibration::Lives(calibration) => Fitted::Lives(calibration, Box::new(calibrate(calibration, observer)?)),
@@ -83,7 +79,6 @@ impl Calibration {
 }
 
 impl Fitted<'_> {
-    /// What the user should know about the fit.
     pub fn warnings(&self) -> &[String] {
         match self {
             Fitted::Lives(_, fit) => &fit.warnings,

@@ -6,18 +6,13 @@ use toml::{Table, Value};
 
 use crate::criterion::Criterion;
 use crate::exponent::{Exponent, FitKeys, delta_k_ratio, exponent};
-use perilife_base::error::{input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::{Document, Folder, sha256};
 use perilife_base::keys::{Need, Plain, all, key, length, section};
 use perilife_base::kinds::Named as _;
-use perilife_base::units::MM;
-use perilife_base::{
-    table::{
-        Decimal, Sheet,
-        units::{CycleUnit, LengthUnit, LoadUnit},
-    },
-    units::round_off,
-};
+use perilife_base::table::units::{CycleUnit, LengthUnit, LoadUnit};
+use perilife_base::table::{Decimal, Sheet};
+use perilife_base::units::{MM, round_off};
 use perilife_growth::case::record::SourceFile;
 use perilife_growth::case::{Case, LawSource};
 use perilife_measured::rates::{COLUMNS, DECIMAL, SHEET};
@@ -27,7 +22,6 @@ use perilife_plate::specimen::{Specimen, SpecimenKind};
 
 /// Slack of crack lengths against each other, m: binary fractions of a mm need not agree to the last bit.
 const LENGTH_SLACK: f64 = 1e-9;
-
 /// What the specimen's crack may be longer than the first reading besides, m: its rounding in a report.
 const START_SLACK: f64 = 5e-5;
 /// Share by which the specimen's crack may be longer than the first reading: 12 mm are 0.4724 in of four decimals, or 11.999 mm.
@@ -41,29 +35,22 @@ pub struct CalibrationCase {
     pub case: Case,
     /// Measured curves inside the fit window, cycles counted from its first reading.
     pub curves: Vec<MeasuredCurve>,
-    /// Measured curves as they were read, whole.
     pub read: Vec<MeasuredCurve>,
     /// Ends of the fit window, m.
     pub window: [f64; 2],
     /// Yield strength of the material, Pa, by which readings are judged.
     pub yield_strength: Option<f64>,
-    /// The exponent: fitted, given, or of a record.
     pub exponent: Exponent,
-    /// Which lives count.
     pub criterion: Criterion,
-    /// Measured files with their hashes.
     pub sources: Vec<SourceFile>,
     /// Readings that do not count, with the reasons.
     pub left_out: Vec<LeaveOut>,
-    /// What the user should know.
     pub warnings: Vec<String>,
-    /// The whole file, overrides applied.
     pub input: Table,
     formula: Option<HandbookFormula>,
 }
 
 perilife_base::keys! {
-    /// Keys of `[measured]` of readings.
     pub struct MeasuredKeys {
         files: Vec<String> = key("files", "Files of readings: CSV or workbooks, one or more specimens each");
         from: Option<f64> = length("from_crack_length_mm", "From crack length: start of the fit window");
@@ -96,17 +83,17 @@ impl MeasuredKeys {
 
 impl CalibrationCase {
     /// Reads a calibration file and the measured files it names; `overrides` are `section.key=value`.
-    pub fn from_file(path: &Path, overrides: &[String]) -> perilife_base::error::Result<Self> {
+    pub fn from_file(path: &Path, overrides: &[String]) -> Result<Self> {
         Self::from_document(Document::read(path, overrides)?)
     }
 
     /// The same for text; the files it names lie in `folder`.
-    pub fn from_text(text: &str, name: &str, folder: impl Into<Folder>) -> perilife_base::error::Result<Self> {
+    pub fn from_text(text: &str, name: &str, folder: impl Into<Folder>) -> Result<Self> {
         Self::from_document(Document::parse(text, name, folder, &[])?)
     }
 
     /// The same for a parsed document, which gives errors their line.
-    pub fn from_document(mut document: Document) -> perilife_base::error::Result<Self> {
+    pub fn from_document(mut document: Document) -> Result<Self> {
         let input = document.table.clone();
         // Taken out of the table, but not of the text: errors still find their line.
         let measured = document.table.remove("measured");
@@ -140,13 +127,7 @@ impl CalibrationCase {
         build().map_err(|error| document.locate(error))
     }
 
-    fn build(
-        mut case: Case,
-        keys: MeasuredKeys,
-        fit: FitKeys,
-        folder: &Folder,
-        input: Table,
-    ) -> perilife_base::error::Result<Self> {
+    fn build(mut case: Case, keys: MeasuredKeys, fit: FitKeys, folder: &Folder, input: Table) -> Result<Self> {
         if !matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
             let remedy = "remove a, p, horizon_mm and fitted from [fatigue]; to fix p set it in [fit]";
             return Err(input_missing("fatigue", "gives the law that the calibration fits", remedy));
@@ -209,7 +190,7 @@ impl CalibrationCase {
 /// Takes what a calibration does not say from its readings: the load, where all have the same, and the crack at the first one that counts.
 /// That of a central crack is asked for where no header says that lengths are tip to tip. What was taken, in words.
 /// Errors: a window without readings.
-fn complete(table: &mut Table, measured: &Measured, keys: &MeasuredKeys) -> perilife_base::error::Result<Vec<String>> {
+fn complete(table: &mut Table, measured: &Measured, keys: &MeasuredKeys) -> Result<Vec<String>> {
     const LENGTH: &str = "crack_length_mm";
     let mut notes = Vec::new();
     let load = measured.load();
@@ -242,11 +223,10 @@ fn complete(table: &mut Table, measured: &Measured, keys: &MeasuredKeys) -> peri
 }
 
 /// Readings under a spectrum have no one ΔK.
-fn refuse_spectrum(case: &Case) -> perilife_base::error::Result<()> {
-    if let Some(residual) = &case.loading.residual {
-        let problem = "cannot be combined with a calibration (ΔK and rate at one R)";
-        return Err(input(residual.key(), residual.words(), problem, "calibrate on readings of plates without residual stress"));
-    }
+fn refuse_spectrum(case: &Case) -> Result<()> {
+    let problem = "cannot be combined with a calibration (ΔK and rate at one R)";
+    let remedy = "calibrate on readings of plates without residual stress";
+    fail_if!(let Some(residual) = &case.loading.residual, input(residual.key(), residual.words(), problem, remedy));
     if case.loading.spectrum.is_none() {
         return Ok(());
     }
@@ -257,23 +237,19 @@ fn refuse_spectrum(case: &Case) -> perilife_base::error::Result<()> {
 
 /// Curves of one stress ratio say nothing about its influence, and a record means ε = s_max (1-R): another Walker exponent
 /// belongs to the case that uses the record at another ratio.
-fn check_walker(case: &Case) -> perilife_base::error::Result<()> {
+fn check_walker(case: &Case) -> Result<()> {
     let gamma = case.fatigue.walker_gamma;
     if gamma == 1.0 {
         return Ok(());
     }
     let problem = "does not apply to a fit at one R";
-    Err(input(
-        "fatigue.walker_gamma",
-        gamma,
-        problem,
-        "remove it here and give it in the case that uses the fit at another stress ratio",
-    ))
+    let remedy = "remove it here and give it in the case that uses the fit at another stress ratio";
+    Err(input("fatigue.walker_gamma", gamma, problem, remedy))
 }
 
 /// A and p stand for C and m of the rate over K; bonds left to their own strains grow a crack at another one, which depends on lattice
 /// and horizon.
-fn check_growth_rate(case: &Case) -> perilife_base::error::Result<()> {
+fn check_growth_rate(case: &Case) -> Result<()> {
     if !case.spends_bond_life() {
         return Ok(());
     }
@@ -287,11 +263,8 @@ fn unrecorded(case: &Case) -> Option<String> {
     (case.fatigue.threshold > 0.0).then(|| line.to_owned())
 }
 
-/// Curves of the measured files, and what the record says about the files.
-fn readings(keys: &MeasuredKeys, folder: &Folder) -> perilife_base::error::Result<(Measured, Vec<SourceFile>)> {
-    if keys.files.is_empty() {
-        return Err(input("measured.files", "[]", "has no file", "name at least one measured a-N curve"));
-    }
+fn readings(keys: &MeasuredKeys, folder: &Folder) -> Result<(Measured, Vec<SourceFile>)> {
+    fail_if!(keys.files.is_empty(), input("measured.files", "[]", "has no file", "name at least one measured a-N curve"));
     check_left_out(&keys.leave_out, &keys.files)?;
     let mut measured = Measured::default();
     let mut sources = Vec::with_capacity(keys.files.len());
@@ -312,12 +285,11 @@ pub fn source(file: &str, bytes: &[u8]) -> SourceFile {
     SourceFile { file: file.to_owned(), sha256: sha256(bytes) }
 }
 
-/// Ends of the fit window with their slack, m.
 fn window_ends(keys: &MeasuredKeys) -> [f64; 2] {
     [keys.from.unwrap_or(0.0) - LENGTH_SLACK, keys.to.unwrap_or(f64::INFINITY) + LENGTH_SLACK]
 }
 
-fn window(measured: &Measured, keys: &MeasuredKeys) -> perilife_base::error::Result<Measured> {
+fn window(measured: &Measured, keys: &MeasuredKeys) -> Result<Measured> {
     let MeasuredKeys { from, to, .. } = *keys;
     if let (Some(from), Some(to)) = (from, to)
         && from >= to
@@ -329,14 +301,14 @@ fn window(measured: &Measured, keys: &MeasuredKeys) -> perilife_base::error::Res
 }
 
 /// Refuses a crack that does not go through: its K depends on its shape, and that on the law which is asked for.
-fn check_through(specimen: &Specimen) -> perilife_base::error::Result<()> {
+fn check_through(specimen: &Specimen) -> Result<()> {
     let Some(flaw) = &specimen.part_through else { return Ok(()) };
     let problem = "part-through cracks cannot be used: their K depends on the law being fitted";
     Err(input("specimen.kind", format!("\"{}\"", flaw.kind()), problem, "fit the law to through cracks"))
 }
 
 /// The model starts at the specimen's crack length, so no reading may come before it; one that its rounding puts there is at the start.
-fn check_start(specimen: &Specimen, curves: &mut [MeasuredCurve]) -> perilife_base::error::Result<()> {
+fn check_start(specimen: &Specimen, curves: &mut [MeasuredCurve]) -> Result<()> {
     let start = specimen.shortest_crack();
     for curve in curves {
         let first = curve.crack_length[0]; // a window keeps at least five readings
@@ -344,12 +316,9 @@ fn check_start(specimen: &Specimen, curves: &mut [MeasuredCurve]) -> perilife_ba
         let second = curve.crack_length[1];
         if start > first * (1.0 + ROUNDING) + START_SLACK || start > second * (1.0 + ROUNDING) {
             let mm = |length: f64| round_off(length / MM).to_string();
-            return Err(input(
-                "specimen.crack_length_mm",
-                mm(start),
-                format!("exceeds the first reading of specimen {}, {} mm", curve.specimen, mm(first)),
-                "start the model at the first reading, or the window (measured.from_crack_length_mm) at the model",
-            ));
+            let problem = format!("exceeds the first reading of specimen {}, {} mm", curve.specimen, mm(first));
+            let remedy = "start the model at the first reading, or the window (measured.from_crack_length_mm) at the model";
+            return Err(input("specimen.crack_length_mm", mm(start), problem, remedy));
         }
         curve.crack_length.iter_mut().for_each(|length| *length = length.max(start));
     }

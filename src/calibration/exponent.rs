@@ -2,7 +2,7 @@
 
 use super::criterion::Criterion;
 use super::laws::FitLaw;
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::Folder;
 use perilife_base::keys::key;
 use perilife_growth::case::{Method, fitted_record};
@@ -12,7 +12,6 @@ use perilife_measured::MeasuredCurve;
 pub const DELTA_K_RATIO_MIN: f64 = 2.0;
 
 perilife_base::kinds! {
-    /// Constants a calibration can fit.
     pub enum Parameter for "fit.parameters" {
         A = "a": "the constant A",
         P = "p": "the exponent p",
@@ -20,7 +19,6 @@ perilife_base::kinds! {
 }
 
 perilife_base::keys! {
-    /// Keys of `[fit]`.
     pub struct FitKeys {
         parameters: Vec<Parameter> = key("parameters", "Fitted constants"), or "a, p" vec![Parameter::A, Parameter::P];
         p: Option<f64> = key("p", "Exponent p: given, not fitted");
@@ -34,15 +32,9 @@ perilife_base::keys! {
 pub(super) fn exponent(fit: &FitKeys, folder: &Folder, method: Method, delta_k_ratio: Option<f64>) -> Result<Exponent> {
     let parameters = &fit.parameters;
     let names: Vec<String> = parameters.iter().map(|parameter| format!("\"{parameter}\"")).collect();
-    if !parameters.contains(&Parameter::A) {
-        let remedy = "write parameters = [\"a\", \"p\"], or [\"a\"] with p = ...";
-        return Err(input(
-            "fit.parameters",
-            format!("[{}]", names.join(", ")),
-            "does not contain a, which is always fitted",
-            remedy,
-        ));
-    }
+    let remedy = "write parameters = [\"a\", \"p\"], or [\"a\"] with p = ...";
+    let problem = "does not contain a, which is always fitted";
+    fail_if!(!parameters.contains(&Parameter::A), input("fit.parameters", format!("[{}]", names.join(", ")), problem, remedy));
     match (parameters.contains(&Parameter::P), fit.p, fit.record.as_deref()) {
         (_, Some(p), Some(_)) => Err(input("fit.p", p, "conflicts with record", "give p or record")),
         (true, Some(p), None) => Err(input("fit.p", p, "is both given and fitted", "remove p, or write parameters = [\"a\"]")),
@@ -57,11 +49,10 @@ pub(super) fn exponent(fit: &FitKeys, folder: &Folder, method: Method, delta_k_r
         },
         (false, Some(p), None) => Ok(Exponent { fixed: Some(p), source: "given".to_owned(), ..Exponent::default() }),
         (false, None, Some(file)) => Exponent::of_record(file, folder, method),
-        (false, None, None) => Err(input_missing(
-            "fit.p",
-            "is missing",
-            "give the exponent p, or record = \"fitted.toml\", or fit it too: parameters = [\"a\", \"p\"]",
-        )),
+        (false, None, None) => {
+            let remedy = "give the exponent p, or record = \"fitted.toml\", or fit it too: parameters = [\"a\", \"p\"]";
+            Err(input_missing("fit.p", "is missing", remedy))
+        }
     }
 }
 
@@ -85,7 +76,6 @@ pub struct Exponent {
     pub error: f64,
     /// `given`, or the file of the record; empty where it is fitted.
     source: String,
-    /// What the user should know about it.
     pub warning: Option<String>,
 }
 
@@ -115,11 +105,9 @@ impl Exponent {
             let warning = format!("ΔK varies by a factor of {delta_k_ratio:.2}, enough to fit p; {file} not used");
             return Ok(Exponent { warning: Some(warning), ..Self::default() });
         }
-        let warning = format!(
-            "ΔK varies only by a factor of {delta_k_ratio:.2} (need {DELTA_K_RATIO_MIN}): p = {:.4} ± {:.4} taken from {file}",
-            of_record.fixed.unwrap_or(f64::NAN),
-            of_record.error
-        );
+        let (p, error) = (of_record.fixed.unwrap_or(f64::NAN), of_record.error);
+        let few = format!("ΔK varies only by a factor of {delta_k_ratio:.2} (need {DELTA_K_RATIO_MIN})");
+        let warning = format!("{few}: p = {p:.4} ± {error:.4} taken from {file}");
         Ok(Exponent { warning: Some(warning), ..of_record })
     }
 }

@@ -23,30 +23,24 @@ use perilife_laws::STEADY_EXPONENTS;
 use perilife_laws::curve::CurveLaw;
 use perilife_measured::{LeaveOut, MeasuredCurve, first_of};
 
-/// Most remarks on readings that a fit repeats.
 const DOUBTS_SHOWN: usize = 6;
 
 #[derive(Clone, Copy)]
 pub struct FitTask<'a> {
     /// Curves inside the fit window ([`perilife_measured::Measured::window`]).
     pub curves: &'a [MeasuredCurve],
-    /// p given by the user; `None` fits it.
     pub fixed_p: Option<f64>,
-    /// Which lives count.
     pub criterion: Criterion,
     /// ΔK of the handbook (Pa√m) at a crack length (m).
     pub delta_k: &'a dyn Fn(f64) -> f64,
 }
 
-/// Result of a calibration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
     /// The curve that the constants are shown beside: the pointwise median of several specimens, or the only one.
     pub record: FittedCurve,
     pub specimens: Vec<FittedCurve>,
-    /// Covariance of the record's (ln A, p).
     pub confidence: Confidence,
-    /// Paris equivalents of the record.
     pub paris: Paris,
     /// The curve of the rates, where that is the law that is written.
     pub curve: Option<CurveLaw>,
@@ -54,7 +48,6 @@ pub struct Fit {
     pub power_law_misfit: Option<MisfitAtEnds>,
     /// By how much the law misses the curve that it was fitted to at its first and last readings.
     pub misfit_at_ends: MisfitAtEnds,
-    /// Readings that do not belong.
     pub left_out: Vec<LeaveOut>,
     /// The bonds that A and p of the record are of; without them they are C (m/cycle, MPa√m) and m.
     pub bonds: Option<Bonds>,
@@ -62,24 +55,21 @@ pub struct Fit {
     pub own_path: Option<OwnPath>,
     /// Scatter of the specimens; `None` where their readings do not tell it.
     pub population: Option<Population>,
-    /// What the user should know.
     pub warnings: Vec<String>,
 }
 
+/// Bonds of a horizon and an actual lattice spacing, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bonds {
     /// β of the record's exponent ([`perilife_growth::rate_constant`]).
     pub rate_constant: f64,
-    /// Horizon, m.
     pub horizon: f64,
-    /// Actual lattice spacing, m.
     pub spacing: f64,
 }
 
 /// K along the path of a crack that no handbook has.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OwnPath {
-    /// ΔK over crack length.
     pub factors: PowerLaw,
     /// How often it was computed: again where several tips share the growth by an exponent that is not known before.
     pub runs: usize,
@@ -236,7 +226,6 @@ fn delta_k_range(task: &FitTask<'_>) -> [f64; 2] {
     all.fold([f64::INFINITY, 0.0], |[low, high], k| [k.min(low), k.max(high)])
 }
 
-/// What speaks against the readings of the specimens.
 fn remarks(task: &FitTask<'_>, runs: &[Vec<OutlierRun>]) -> Vec<String> {
     let of_curve = |(curve, runs): (&MeasuredCurve, &Vec<OutlierRun>)| doubts_beside(curve, runs, task.delta_k);
     let mut lines: Vec<String> = task.curves.iter().zip(runs).flat_map(of_curve).collect();
@@ -256,17 +245,11 @@ fn checked_p(p: f64) -> Result<f64> {
     Err(input("fit.p", p, format!("is outside {low} to {high}"), "give the exponent of the growth law, usually 2 to 4"))
 }
 
-/// Readings nearer together than a laboratory reads.
 fn short_steps_warning(lengths: &[f64]) -> Option<String> {
     let short = lengths.windows(2).filter(|pair| pair[1] - pair[0] < STEP_MIN * (1.0 - 1e-9)).count();
-    (short > 0).then(|| {
-        format!(
-            "{short} of {} steps between readings are under {} mm (ASTM E647, 8.6.2): such readings are merged for the error \
-             of the fit; read less often",
-            lengths.len() - 1,
-            STEP_MIN / MM
-        )
-    })
+    let (steps, least) = (lengths.len().saturating_sub(1), STEP_MIN / MM);
+    let what = "such readings are merged for the error of the fit; read less often";
+    (short > 0).then(|| format!("{short} of {steps} steps between readings are under {least} mm (ASTM E647, 8.6.2): {what}"))
 }
 
 impl Fit {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::population::plate::Quantiles;
-use perilife_base::error::{Result, input};
+use perilife_base::error::{Result, fail_if, input};
 use perilife_base::monotone::Monotone;
 use perilife_base::units::MM;
 use perilife_growth::case::Case;
@@ -57,7 +57,6 @@ pub struct InspectFrom {
 }
 
 impl InspectFrom {
-    /// Refuses a factor below 1.
     pub fn check(&self) -> Result<()> {
         if self.factor.is_finite() && self.factor >= 1.0 {
             return Ok(());
@@ -71,7 +70,6 @@ impl InspectFrom {
 pub struct TipLengths {
     /// By tip; empty of the end of a slot.
     pub lengths: Vec<Vec<f64>>,
-    /// The tip that ends the life.
     pub leads: usize,
 }
 
@@ -96,10 +94,9 @@ impl TipLengths {
         };
         let (shortest, longest) = (lengths[0], lengths[lengths.len() - 1]);
         let length = from.crack_length_mm;
-        if !(shortest..=longest).contains(&length) {
-            let problem = format!("is not on the curve: the crack of tip {tip} has {shortest:.4} to {longest:.4} mm");
-            return Err(input(from.names[0], format!("{length} mm"), problem, "give a length between them, or another tip"));
-        }
+        let problem = || format!("is not on the curve: the crack of tip {tip} has {shortest:.4} to {longest:.4} mm");
+        let remedy = "give a length between them, or another tip";
+        fail_if!(!(shortest..=longest).contains(&length), input(from.names[0], format!("{length} mm"), problem(), remedy));
         let after = lengths.partition_point(|known| *known < length).clamp(1, lengths.len() - 1);
         let (a, b) = (lengths[after - 1], lengths[after]);
         let share = if b > a { (length - a) / (b - a) } else { 1.0 };
@@ -121,16 +118,14 @@ impl Inspection {
     ) -> Result<Self> {
         from.check()?;
         let of_tip = tips.map(|tips| tips.of_curve(curve, from)).transpose()?;
-        if let (None, Some(tip)) = (of_tip, from.tip) {
-            let problem = "applies only to kind = \"plate\"; this specimen has one crack length";
-            return Err(input(from.names[2], tip, problem, "remove it"));
-        }
+        let problem = "applies only to kind = \"plate\"; this specimen has one crack length";
+        let remedy = "remove it";
+        fail_if!(let (None, Some(tip)) = (of_tip, from.tip), input(from.names[2], tip, problem, remedy));
         let (length, end) = (of_tip.map_or(from.crack_length_mm, |(_, [length, _])| length), curve[curve.len() - 1]);
         let (shortest, longest) = (curve[0][0], end[0]);
-        if !(shortest..=longest).contains(&length) {
-            let problem = format!("is not on the curve, {shortest} to {longest} mm");
-            return Err(input(from.names[0], format!("{length} mm"), problem, "give a length between them"));
-        }
+        let problem = || format!("is not on the curve, {shortest} to {longest} mm");
+        let remedy = "give a length between them";
+        fail_if!(!(shortest..=longest).contains(&length), input(from.names[0], format!("{length} mm"), problem(), remedy));
         let cycles_at = of_tip.map_or_else(|| Monotone::new(curve.iter().copied()).at(length), |(_, [_, cycles])| cycles);
         let remaining = end[1] - cycles_at;
         Ok(Inspection {

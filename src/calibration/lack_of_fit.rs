@@ -30,13 +30,10 @@ pub struct Misfit {
 /// Misfit at both ends, whatever its standard error; `None` without growth there.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MisfitAtEnds {
-    /// The first readings.
     pub low: Option<Misfit>,
-    /// The last ones.
     pub high: Option<Misfit>,
 }
 
-/// Least intervals of an end.
 const INTERVALS_MIN: usize = 2;
 
 /// Misfit of the typical specimen at its first and last readings, those within a tenth of the range of ln ΔK, or two intervals: the mean over
@@ -58,7 +55,6 @@ pub fn misfit_at_ends(measured: &[MeasuredCurve], law: &[MeasuredCurve], delta_k
     MisfitAtEnds { low: typical(0), high: typical(1) }
 }
 
-/// Misfits of a specimen at its first and its last readings.
 fn misfits(measured: &MeasuredCurve, law: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> [Option<Misfit>; 2] {
     let log: Vec<f64> = (0..measured.cycles.len()).map(|reading| log_k(measured, reading, delta_k)).collect();
     let last = log.len() - 1; // a curve has five readings
@@ -86,7 +82,6 @@ impl MisfitAtEnds {
         misfits.max_by(|a, b| a.abs().total_cmp(&b.abs()))
     }
 
-    /// Both ends in one line.
     pub fn words(&self) -> String {
         let end = |end: Misfit| {
             let size = end.rate_over_law_percent.abs();

@@ -1,7 +1,7 @@
 //! Cycles at which readings, and rows of a run, reach a length; several specimens as one curve, the pointwise median of cycles at equal
 //! crack length.
 
-use perilife_base::error::{Error, Result, input_missing};
+use perilife_base::error::{Error, Result, fail_if, input_missing};
 use perilife_base::monotone::Monotone;
 use perilife_base::units::MM;
 use perilife_measured::{MeasuredCurve, READINGS_MIN};
@@ -39,7 +39,6 @@ impl Rising {
         Some([*self.readings.get(place.checked_sub(1)?)?, after])
     }
 
-    /// As the function of that name.
     pub fn cycles_at(&self, crack_length: f64) -> Option<f64> {
         // The first reading that is as long or longer.
         let place = self.readings.partition_point(|&(a, _)| a < crack_length && (crack_length - a).abs() > SAME_LENGTH);
@@ -67,9 +66,8 @@ pub fn median(values: &[f64]) -> f64 {
 /// Lengths at which several curves can be compared: their own readings where all were read at the same lengths, else as
 /// many equally spaced ones as the curves have readings (median), over the range that all of them cover.
 pub fn common_lengths(curves: &[MeasuredCurve]) -> Result<Vec<f64>> {
-    let Some(first) = curves.first() else {
-        return Err(input_missing("measured.files", "contain no curve", "give at least one specimen"));
-    };
+    let first =
+        curves.first().ok_or_else(|| input_missing("measured.files", "contain no curve", "give at least one specimen"))?;
     let same = |curve: &MeasuredCurve| {
         curve.crack_length.len() == first.crack_length.len()
             && curve.crack_length.iter().zip(&first.crack_length).all(|(a, b)| (a - b).abs() <= SAME_LENGTH)
@@ -81,13 +79,9 @@ pub fn common_lengths(curves: &[MeasuredCurve]) -> Result<Vec<f64>> {
     let start = curves.iter().filter_map(|curve| curve.crack_length.first().copied()).fold(0.0, f64::max);
     let longest = |curve: &MeasuredCurve| curve.crack_length.iter().copied().fold(0.0, f64::max);
     let end = curves.iter().map(longest).fold(f64::INFINITY, f64::min);
-    if end - start <= SAME_LENGTH {
-        return Err(input_missing(
-            "measured.files",
-            "contain specimens whose crack lengths do not overlap: no common median",
-            "calibrate them one by one, or give curves over the same range",
-        ));
-    }
+    let problem = "contain specimens whose crack lengths do not overlap: no common median";
+    let remedy = "calibrate them one by one, or give curves over the same range";
+    fail_if!(end - start <= SAME_LENGTH, input_missing("measured.files", problem, remedy));
     let counts: Vec<f64> = curves.iter().map(|curve| curve.cycles.len() as f64).collect();
     let points = (median(&counts) as usize).max(READINGS_MIN);
     let step = (end - start) / (points - 1) as f64;
@@ -106,11 +100,9 @@ pub fn pointwise_median_at(curves: &[MeasuredCurve], lengths: &[f64]) -> Result<
             match (rising.cycles_at(length), *start) {
                 (Some(n), Some(start)) => since_start.push(n - start),
                 _ => {
-                    return Err(input_missing(
-                        "measured.files",
-                        format!("do not reach {:.4} mm in specimen {}", length / MM, curve.specimen),
-                        "choose lengths that every specimen covers",
-                    ));
+                    let problem = format!("do not reach {:.4} mm in specimen {}", length / MM, curve.specimen);
+                    let remedy = "choose lengths that every specimen covers";
+                    return Err(input_missing("measured.files", problem, remedy));
                 }
             }
         }
@@ -145,7 +137,6 @@ fn since_first(curve: &[(f64, f64)], lengths: &[f64], between: impl Fn(usize, f6
     Ok(at.into_iter().map(|n| n - start).collect())
 }
 
-/// Cycles at which the curve first reaches a length.
 fn cycles_reaching(curve: &[(f64, f64)], between: impl Fn(usize, f64) -> f64, length: f64) -> Result<f64> {
     let outside = |problem: String| Err(Error::Mechanics(problem));
     let (Some(first), Some(last)) = (curve.first(), curve.last()) else {
@@ -173,7 +164,6 @@ fn cycles_reaching(curve: &[(f64, f64)], between: impl Fn(usize, f64) -> f64, le
 pub const NORMAL_MEDIAN: f64 = 0.6745;
 /// Standard deviations from the mean beyond which a value counts less (Huber 1964, 95 % efficiency).
 const HUBER: f64 = 1.345;
-/// Steps in which the mean settles.
 const HUBER_STEPS: usize = 60;
 
 /// Mean of which values far from the median count less; the plain one of fewer than three.

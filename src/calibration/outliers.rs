@@ -14,8 +14,7 @@
 use super::median::{NORMAL_MEDIAN, median};
 use super::rates::STEP_MIN;
 use nalgebra::{DMatrix, DVector};
-use perilife_base::units::round_off;
-use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_base::units::{MM, MPA_SQRT_M, round_off};
 
 use super::population::intervals::INTERVALS_MAX;
 use perilife_laws::curve::{CurveLaw, EFFECTS, KNOTS, ROUGHNESS};
@@ -33,24 +32,17 @@ const TUKEY: f64 = 4.685;
 const DEVIATION_MIN: f64 = 0.01;
 /// τ of the shape, as in [`super::population`], wide.
 const SHAPE_DEVIATION: f64 = 0.3;
-/// Most steps of the weights, and the change of residuals at which they stand still.
 const STEPS: (usize, f64) = (40, 1e-6);
-
 /// Fewest rates for a line that a few of them cannot move.
 const RATES_MIN: usize = 6;
-
 /// Rates that a line is drawn through at the most, evenly picked: slopes of all pairs are taken.
 const RATES_MAX: usize = 2000;
-
-/// Runs of readings that a message names.
 const RUNS_NAMED: usize = 5;
 
 /// Rate of growth from one reading to a later one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepRate {
-    /// First reading.
     pub from: usize,
-    /// Last reading.
     pub to: usize,
     /// ln of ΔK in MPa√m at the mean length.
     pub log_k: f64,
@@ -61,7 +53,6 @@ pub struct StepRate {
 /// Line `ln da/dN = intercept + m ln ΔK` in m/cycle and MPa√m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct RobustLine {
-    /// ln of the rate at 1 MPa√m.
     pub intercept: f64,
     pub m: f64,
 }
@@ -77,9 +68,7 @@ impl RobustLine {
 /// Readings between which a crack grew too slowly or too fast.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OutlierRun {
-    /// First reading.
     pub from: usize,
-    /// Last reading.
     pub to: usize,
     /// Rate over that of the curve, where it is farthest from it.
     pub factor: f64,
@@ -265,7 +254,6 @@ pub fn doubts_beside(curve: &MeasuredCurve, runs: &[OutlierRun], delta_k: &dyn F
     named(curve, runs).into_iter().chain(shift).collect()
 }
 
-/// Warnings that name the runs of a curve by line, with the window that leaves them out.
 fn named(curve: &MeasuredCurve, runs: &[OutlierRun]) -> Vec<String> {
     let mut lines: Vec<String> = runs.iter().take(RUNS_NAMED).map(|run| run_warning(curve, *run)).collect();
     if runs.len() > RUNS_NAMED {
@@ -301,7 +289,6 @@ fn run_warning(curve: &MeasuredCurve, run: OutlierRun) -> String {
     )
 }
 
-/// File and lines of readings, to go in front of a message.
 fn place(curve: &MeasuredCurve, from: usize, to: usize) -> String {
     match curve.source.lines.len() {
         0 => String::new(),
@@ -312,17 +299,12 @@ fn place(curve: &MeasuredCurve, from: usize, to: usize) -> String {
 /// F above which two levels are certain. The split is chosen among many, so that ordinary tables of F do not hold; of 34 panels of one
 /// alloy under constant load one reaches it.
 pub const F_MAX: f64 = 60.0;
-
 /// Smallest ratio of the levels worth a word: computed curves scatter so little that any bend is certain.
 const RATIO_MIN: f64 = 1.1;
-
 /// Share of rates that may be left to a warning of their own.
 const FEW: f64 = 0.1;
-
-/// Fewest rates on each side.
 const SIDE_MIN: usize = 3;
 
-/// Two levels of rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelShift {
     /// First rate of the second level.
@@ -331,7 +313,6 @@ pub struct LevelShift {
     pub f: f64,
     /// Its rate over that of the first, at equal ΔK.
     pub ratio: f64,
-    /// The common exponent.
     pub m: f64,
 }
 

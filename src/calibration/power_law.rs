@@ -11,7 +11,6 @@ use perilife_measured::MeasuredCurve;
 
 /// Lengths at which ΔK is tabulated; Simpson's rule on them integrates the Virkler panel to 1e-9.
 const INTERVALS: usize = 400;
-
 /// Pieces of Simpson's rule between two readings of different loads.
 const PIECES_OF_STEP: usize = 2;
 
@@ -46,12 +45,9 @@ impl PowerLaw {
         let delta_k: Vec<Vec<f64>> = lengths.iter().map(|&a| delta_k(a).into_iter().map(in_mpa).collect()).collect();
         let grows = |tips: &Vec<f64>| !tips.is_empty() && tips.iter().all(|k| k.is_finite() && *k > 0.0);
         if let Some(i) = delta_k.iter().position(|tips| !grows(tips)) {
-            return Err(input(
-                "measured.crack_length_mm",
-                lengths[i] / perilife_base::units::MM,
-                "has no stress intensity range above 0 in the handbook formula of the specimen",
-                "narrow the window to lengths the formula covers",
-            ));
+            let problem = "has no stress intensity range above 0 in the handbook formula of the specimen";
+            let remedy = "narrow the window to lengths the formula covers";
+            return Err(input("measured.crack_length_mm", lengths[i] / perilife_base::units::MM, problem, remedy));
         }
         let piece = |i: usize| Piece {
             lengths: [lengths[i], lengths[i + 1], lengths[i + 2]],

@@ -21,16 +21,12 @@ use perilife_measured::{MeasuredCurve, side_difference_max};
 
 /// Smallest increment of crack length between readings that E647 (8.6.2) asks for, m.
 pub const STEP_MIN: f64 = 0.25 * MM;
-
 /// Rates below which a test is one to the threshold, m/cycle.
 const SLOW: f64 = 1e-5 * MM_PER_CYCLE;
 /// Steepest fall of ln K over the crack length in a K-decreasing test, 1/m, with room for its steps.
 const GRADIENT_MIN: f64 = -0.08 * 1.05 / MM;
-
 /// Readings on each side of the middle one of a parabola.
 const HALF_SPAN: usize = 3;
-
-/// First line of a table of rates.
 pub const HEADER: &str = "specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio\n";
 
 perilife_base::kinds! {
@@ -41,7 +37,6 @@ perilife_base::kinds! {
     }
 }
 
-/// Growth rate at one crack length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RatePoint {
     pub cycles: f64,
@@ -51,13 +46,11 @@ pub struct RatePoint {
     pub rate: f64,
     /// ΔK, Pa√m; NaN where the specimen is not known.
     pub delta_k: f64,
-    /// Range of load over that of the case.
     pub load_factor: f64,
     /// Stress ratio R; NaN where the readings do not say it ([`add_delta_k`]).
     pub ratio: f64,
     /// Largest difference of crack length between sides at the readings of the point, m.
     pub side_difference: f64,
-    /// What speaks against the point.
     pub flags: Flags,
 }
 
@@ -69,13 +62,11 @@ impl RatePoint {
     }
 }
 
-/// What speaks against a rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Flags {
     /// A step of crack length at this point is under 0.25 mm, or near the threshold under ten times the precision of a reading.
     pub short_step: bool,
     pub not_growing: bool,
-    /// The ligament is too small for its plastic zone.
     pub yielding: bool,
     /// The crack front is too uneven: the lengths on the sides differ by more than E647 accepts.
     pub uneven_front: bool,
@@ -127,7 +118,6 @@ pub fn rates(curve: &MeasuredCurve, method: RateMethod) -> Vec<RatePoint> {
     }
 }
 
-/// Slope between a reading and the one before.
 fn secant(curve: &MeasuredCurve, factors: &[(f64, f64)], i: usize) -> Option<RatePoint> {
     let (n, a) = (&curve.cycles, &curve.crack_length);
     curve.counts(i).then(|| RatePoint {

@@ -11,7 +11,6 @@ use perilife_measured::{LeaveOut, MeasuredCurve};
 
 /// Readings from which a curve has rates by parabolas through seven of them.
 const SEVEN: usize = 7;
-/// Why a reading outside the fit window does not count.
 const OUTSIDE: &str = "outside the fit window";
 
 /// The table: ΔK, MPa√m, by that of the load of the case, Pa√m, at a length, m; a rate stands beside the reading in its middle, a secant
@@ -48,9 +47,7 @@ pub struct Reading {
     pub delta_k_mpa_sqrt_m: Option<f64>,
     /// `None` at the ends of a record.
     pub da_dn_mm_per_cycle: Option<f64>,
-    /// How the rate was taken.
     pub method: String,
-    /// What speaks against it.
     pub marks: String,
     /// Why it does not count; empty where it does.
     pub left_out: String,

@@ -57,7 +57,6 @@ pub struct LivesRecord {
     pub life_fitted: Figure,
     /// Name of the curve that the lives are of: that of a specimen, or `median` or `mean`.
     pub fitted_to: String,
-    /// Fit window.
     pub from_crack_length_mm: f64,
     pub to_crack_length_mm: f64,
     pub delta_k_min_mpa_sqrt_m: f64,
@@ -97,7 +96,6 @@ pub struct SpecimenRecord {
     pub rms_life_error: Figure,
 }
 
-/// A fit of laws to rates.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RatesRecord {
     pub law: GrowthLawKind,
@@ -231,15 +229,12 @@ impl LivesRecord {
         let (c, m) = (self.paris_c_mm_per_cycle, self.paris_m);
         let [low, high] = [self.delta_k_min_mpa_sqrt_m, self.delta_k_max_mpa_sqrt_m];
         let (count, of_law) = (self.specimens.len(), if self.curve.is_some() { "power law of the curve, " } else { "" });
+        let (mm, s) = (name_of("mm"), if count == 1 { "" } else { "s" });
         let mut lines = vec![
             format!("{}, R = {}: {of_law}da/dN = {c:.3e} ΔK^{m:.3} (mm/cycle, MPa√m)", self.material, self.stress_ratio),
             format!("  Exponent       m = {m:.3}{}{source}", error(self.paris_m_error, 3)),
             format!("  Rate           {rate:.3e} mm/cycle ± {:.1} % at the reference ΔK = {pivot:.2} MPa√m", 100.0 * rate_error),
-            format!(
-                "  Tested ΔK      {low:.2} to {high:.2} MPa√m (a = {from} to {to} {}, {count} specimen{})",
-                name_of("mm"),
-                if count == 1 { "" } else { "s" }
-            ),
+            format!("  Tested ΔK      {low:.2} to {high:.2} MPa√m (a = {from} to {to} {mm}, {count} specimen{s})"),
             format!("  Fit            life {life:+.2} %, rms {:.1} % (fitted to {})", 100.0 * rms, self.fitted_to),
         ];
         match (&self.curve, self.population.as_ref().and_then(|population| population.gain)) {
@@ -253,14 +248,11 @@ impl LivesRecord {
         let of_bonds = self.a.zip(self.horizon_mm).map(|(a, horizon)| {
             format!("  Bonds          A = {a:.4e}, p = {:.3}{} at horizon {horizon:.4} mm", self.p, error(self.p_error, 3))
         });
-        let of_lives = format!(
-            "  Life           measured {measured:.0}, fitted {fitted:.0} cycles; {:.1} s; ± is one standard error",
-            self.wall_s
-        );
+        let lives = format!("measured {measured:.0}, fitted {fitted:.0} cycles; {:.1} s", self.wall_s);
+        let of_lives = format!("  Life           {lives}; ± is one standard error");
         [lines, of_bonds.into_iter().chain([of_lives]).collect()]
     }
 
-    /// The curve in words, a row for every knot.
     fn words_of(&self, curve: &CurveRecord) -> Vec<String> {
         let misses = |misfit: MisfitAtEnds| format!("; misfit of the power law: {}", misfit.words());
         let (misses, specimens) = (self.power_law_misfit_at_ends.map_or_else(String::new, misses), self.specimens.len());
@@ -388,7 +380,6 @@ fn strength(margin: f64) -> &'static str {
     }
 }
 
-/// A number with some significant digits.
 fn figure(value: &Value, digits: usize) -> String {
     let value = value.as_f64().unwrap_or(f64::INFINITY);
     if value != 0.0 && !(1e-3..1e4).contains(&value.abs()) {

@@ -61,7 +61,6 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
     }
 }
 
-/// What the user left out, and the program.
 pub fn left_out(calibration: &CalibrationCase, fit: &Fit) -> Vec<LeaveOut> {
     [&calibration.left_out[..], &fit.left_out].concat()
 }

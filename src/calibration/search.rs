@@ -17,11 +17,9 @@ use perilife_measured::{MeasuredCurve, READINGS_MIN};
 const TOLERANCE: f64 = 1e-8;
 /// Distance from an end of [`STEADY_EXPONENTS`] at which the smallest misfit is taken to lie beyond it.
 const AT_END: f64 = 1e-3;
-
 /// Growth that all specimens have in common, over all of theirs, from which on a median of them is a picture of all.
 const COMMON_SHARE: f64 = 0.8;
 
-/// A and p of one curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Constants {
     /// A, 1/cycle.
@@ -89,19 +87,16 @@ pub struct FittedCurve {
     /// Crack lengths, m.
     pub crack_length: Vec<f64>,
     pub cycles_measured: Vec<f64>,
-    /// Fitted cycles at the same lengths.
     pub cycles_fitted: Vec<f64>,
     /// Range of load of the growth up to each reading over that of the case.
     pub load_factor: Vec<f64>,
 }
 
 impl FittedCurve {
-    /// Measured cycles at the last reading.
     pub fn life_measured(&self) -> f64 {
         self.cycles_measured.last().copied().unwrap_or(f64::NAN)
     }
 
-    /// Fitted cycles at the length of the last reading.
     pub fn life_fitted(&self) -> f64 {
         self.cycles_fitted.last().copied().unwrap_or(f64::NAN)
     }
@@ -112,7 +107,6 @@ impl FittedCurve {
     }
 }
 
-/// The law under the loads of a curve.
 pub(super) fn own_law<'l>(law: &'l PowerLaw, curve: &MeasuredCurve) -> Cow<'l, PowerLaw> {
     if curve.is_plain() { Cow::Borrowed(law) } else { Cow::Owned(law.under(curve)) }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use perilife_base::error::{Error, InputError, Result};
+use perilife_base::error::{Error, InputError, Result, fail_if};
 use perilife_base::table::names::Role;
 use perilife_base::units::{MM, round_off};
 use perilife_measured::{Import, SAME_LOAD, Survey, survey};
@@ -19,9 +19,7 @@ pub fn refuse_table(path: &Path) -> Result<()> {
     let bytes = std::fs::read(path).map_err(|error| Error::file(path, "cannot read", error))?;
     let [name, stem] = [path.file_name(), path.file_stem()].map(|name| name.unwrap_or_default().to_string_lossy());
     let mut found = survey(&bytes, path, &Import::default());
-    if found.header.is_empty() && !found.problems.is_empty() {
-        return Err(Error::Input(Box::new(found.problems.swap_remove(0))));
-    }
+    fail_if!(found.header.is_empty() && !found.problems.is_empty(), Error::Input(Box::new(found.problems.swap_remove(0))));
     let lines = lines(&name, &found);
     Err(Error::Input(Box::new(InputError {
         file: Some(path.to_path_buf()),
@@ -31,7 +29,6 @@ pub fn refuse_table(path: &Path) -> Result<()> {
     })))
 }
 
-/// What the table says, and `<...>` for the rest.
 fn lines(name: &str, found: &Survey) -> String {
     let curves = &found.measured.curves;
     let columns = match &found.layout {

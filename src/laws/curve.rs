@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 use crate::growth_law::{GrowthLaw, Walker};
 use crate::paris::ParisLaw;
 
-/// Inner knots of the shape.
 pub const KNOTS: usize = 4;
 /// Fixed effects: b₀, m, c_k.
 pub const EFFECTS: usize = 2 + KNOTS;
@@ -29,7 +28,6 @@ pub const ROUGHNESS: [[f64; KNOTS]; KNOTS] = {
     ]
 };
 
-/// Growth law of a lot.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CurveLaw {
     /// ΔK at which x = 0, Pa√m.
@@ -58,7 +56,6 @@ impl CurveLaw {
         self.range[1] / self.range[0]
     }
 
-    /// Spacing of the knots in ln ΔK.
     fn knot_spacing(&self) -> f64 {
         self.range_ratio().ln() / (KNOTS + 1) as f64
     }
@@ -107,7 +104,6 @@ impl CurveLaw {
         std::array::from_fn(|i| [self.level, self.slope].get(i).copied().unwrap_or_else(|| c[i - 2]))
     }
 
-    /// The law with other fixed effects.
     pub fn with(&self, effects: [f64; EFFECTS]) -> CurveLaw {
         let shape = self.shape.map(|_| std::array::from_fn(|k| effects[2 + k]));
         CurveLaw { level: effects[0], slope: effects[1], shape, ..*self }
@@ -158,7 +154,6 @@ pub struct Shape {
     pub curve: CurveLaw,
     /// C and m of the same ΔK.
     pub paris: ParisLaw,
-    /// Stress ratio of the tests.
     pub ratio: f64,
 }
 
@@ -174,7 +169,6 @@ impl Shape {
 /// Walker's law with the shape of the tests that its constants were fitted to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shaped {
-    /// The power law.
     pub walker: Walker,
     pub shape: Shape,
 }

@@ -5,7 +5,6 @@ pub mod description;
 pub mod forman;
 pub mod nasgro;
 pub mod paris;
-mod rising;
 pub mod table;
 pub mod walker;
 
@@ -22,7 +21,6 @@ pub use walker::Walker;
 const LAWS: &[&GrowthLawSpec] = &[&bonds::LAW, &paris::LAW, &walker::LAW, &forman::LAW, &nasgro::LAW, &table::LAW];
 
 perilife_base::kinds! {
-    /// Which law of growth a case has.
     pub struct GrowthLawKind of GrowthLawSpec in LAWS for "fatigue.growth_law"
 }
 
@@ -44,11 +42,11 @@ pub fn doubt(law: &dyn GrowthLaw, ratio: f64) -> Option<String> {
     let (delta_k, rate) = ELSEWHERE.iter().find_map(|factor| rate_at(factor * METALS.0))?;
     let [low, high] = METALS.1.map(|rate| rate * (delta_k / METALS.0).powf(METALS_EXPONENT));
     (!(low..=high).contains(&rate)).then(|| {
+        let k = delta_k / MPA_SQRT_M;
         format!(
-            "the rate at ΔK = {:.0} MPa√m is {rate:.2e} mm/cycle, outside {low:.0e} to {high:.0e} mm/cycle, the range of metals: \
+            "the rate at ΔK = {k:.0} MPa√m is {rate:.2e} mm/cycle, outside {low:.0e} to {high:.0e} mm/cycle, the range of metals: \
              check the units of rate, crack length, cycles, load and stress intensity (m/cycle is 1000 mm/cycle; C for ksi√in \
-             and in/cycle must be multiplied by 25.4 / 1.0988^m)",
-            delta_k / MPA_SQRT_M
+             and in/cycle must be multiplied by 25.4 / 1.0988^m)"
         )
     })
 }
@@ -58,7 +56,6 @@ pub fn doubt(law: &dyn GrowthLaw, ratio: f64) -> Option<String> {
 pub struct Acting {
     /// ΔK of ASTM E647, Pa√m.
     pub delta_k: f64,
-    /// Stress ratio R.
     pub ratio: f64,
     /// Share of the growth that is by them.
     pub share: f64,
@@ -118,7 +115,6 @@ pub trait GrowthLaw: std::fmt::Debug + Send + Sync {
     }
 }
 
-/// A law with its constants, or rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FactorLaw {
     pub kind: GrowthLawKind,

@@ -7,13 +7,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// What a run records of every block, before rates are taken.
+/// What a run records of every block, before rates are taken; lengths in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     pub cycles: f64,
     /// Crack length in the specimen's convention, m.
     pub crack_length: f64,
-    /// Growth of all tips together, m.
     pub growth: f64,
     /// Work of the loads at maximum load, f·u, J.
     pub work: f64,

@@ -21,11 +21,9 @@ use perilife_plate::specimen::Specimen;
 /// Critical stretch s_t where a case gives none: 5 %, which no plate bears within linear elasticity. It lets the last
 /// ligament of a plate break by overload instead of hanging on bonds that no tip spends.
 pub const OVERLOAD_STRETCH: f64 = 0.05;
-
 /// Radius of the zone around a tip in which bonds lose remaining life, in horizons, where a case gives none: in a narrower zone fewer
 /// bonds break beside the crack, see the growth law.
 pub const ZONE_RADIUS_HORIZONS: f64 = 0.5;
-
 /// `fatigue.step_error_percent` where a case gives none.
 pub const STEP_ERROR_PERCENT: f64 = 0.2;
 
@@ -35,10 +33,7 @@ perilife_base::kinds! {
         TipField = "tip_field": "direction and rate of each tip from its K_I and K_II; bonds across the path are cut",
         BondStrain = "bond_strain": "each bond loses life by its own strain and the crack follows broken bonds; from a slot, until K of the tip takes over",
     }
-}
 
-perilife_base::kinds! {
-    /// Which bonds age.
     pub enum Ageing for "fatigue.ageing" {
         CrackTip = "crack_tip": "bonds within zone_radius_horizons × horizon of a crack tip",
         Everywhere = "everywhere": "all bonds",

@@ -3,12 +3,10 @@
 use super::FatigueLaw;
 use perilife_base::units::MPA_SQRT_M;
 
-/// Constants of the Paris law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParisLaw {
     /// C as the growth rate at ΔK = 1 MPa√m, m/cycle.
     pub c: f64,
-    /// Exponent m.
     pub m: f64,
 }
 

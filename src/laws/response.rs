@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 
 /// Loads of a cycle for which K is known, at the most: lower ones, the largest, and the one that opens the tip.
 const LOADS_MOST: usize = LOWER_LOADS_MOST + 2;
-
 /// Difference from the largest K that is round-off.
 const ROUND_OFF: f64 = 1e-9;
 /// Difference of K over K_max between mirror twins at the most.
@@ -27,7 +26,6 @@ pub struct Response {
 }
 
 impl Response {
-    /// K in proportion to the load.
     pub const PROPORTIONAL: Response = Response { count: 0, loads: [0.0; LOADS_MOST], factors: [0.0; LOADS_MOST] };
 
     /// By pairs of load over the largest, ascending, and K over K_max; fewer than two, or K that is not known, are a proportion.
@@ -47,7 +45,6 @@ impl Response {
         Response::new(&[[0.0, share], [1.0, 1.0]])
     }
 
-    /// Whether K is in proportion to the load.
     pub fn is_proportional(&self) -> bool {
         self.count == 0
     }

@@ -47,7 +47,6 @@ impl SpectrumLaw {
         self.classes.iter().map(|class| self.growth(k_max, class, response)).sum()
     }
 
-    /// What the cycles of a class add to the mean.
     fn growth(&self, k_max: f64, class: &Class, response: &Response) -> f64 {
         self.felt(k_max, class, response).map_or(0.0, |[k, ratio]| class.share * self.law.rate(k, ratio))
     }

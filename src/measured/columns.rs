@@ -3,7 +3,7 @@
 use super::exclusion_flags::{is_of_thousands, rejected};
 use super::header::{columns_of, cut, is_wide, pairs_of, place_of};
 use super::import::{ColumnNames, Import};
-use perilife_base::error::{Error, Result};
+use perilife_base::error::{Error, Result, fail_if};
 use perilife_base::table::decimal::decide;
 use perilife_base::table::names::{Column, Kind, Named, Role, says_tip_to_tip, unit_of_specimen};
 use perilife_base::table::numerals::number;
@@ -13,13 +13,11 @@ use perilife_base::table::{Decimal, Fault, Table, whole_file};
 /// How the specimens of a table are laid out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
-    /// One row a reading.
     Long,
     /// First column crack length, then one column of cycles per specimen.
     WideCycles,
     /// First column cycles, then one column of crack length per specimen.
     WideLengths,
-    /// Two columns per specimen.
     Paired,
 }
 
@@ -27,7 +25,6 @@ pub enum Shape {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     pub name: String,
-    /// Column of the specimen's name.
     pub specimen: Option<Column>,
     pub cycles: Column,
     /// Crack length; of several the mean counts.
@@ -44,17 +41,14 @@ pub struct Series {
     pub own: Vec<usize>,
 }
 
-/// What the columns of one file are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
-    /// How specimens are laid out.
     pub shape: Shape,
     /// Columns of the specimens: one series where all rows have the same columns.
     pub series: Vec<Series>,
     pub decimal: Decimal,
     /// What separates columns; empty where cells are stored, not written.
     pub separator: &'static str,
-    /// What the user should know.
     pub warnings: Vec<String>,
 }
 
@@ -81,7 +75,6 @@ pub(super) fn recognise(table: &Table, import: &Import) -> Result<Layout> {
     Ok(Layout { shape, series, decimal, separator, warnings })
 }
 
-/// Refuses columns that the user names and the file does not have.
 fn check_given(table: &Table, import: &Import) -> Result<()> {
     for (key, _, name) in import.columns.given() {
         if place_of(name, &table.header, &table.names).is_none() {
@@ -122,9 +115,7 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
             let (loads, mut compared) = loads(table, &columns, import, warnings)?;
             compared.extend(of(|column| matches!(column.role, Role::DeltaK | Role::Width | Role::Thickness)));
             compared.retain(|column| matches!(column.unit, Named::Is(_)));
-            if let Some(second) = specimen.get(1) {
-                return Err(says_the_same(table, second.index, "specimen"));
-            }
+            fail_if!(let Some(second) = specimen.get(1), says_the_same(table, second.index, "specimen"));
             warnings.extend(not_read(table, &columns));
             let stem = table.file.file_stem().map_or_else(|| "specimen".to_owned(), |stem| stem.to_string_lossy().into_owned());
             let specimen = specimen.first().copied();
@@ -230,9 +221,7 @@ fn optical(table: &Table, columns: &[Column]) -> Option<Column> {
 /// Columns of crack length, and those of single sides beside them: where no column has the mean, the sides have it.
 fn lengths_and_sides(table: &Table, columns: &[Column], import: &Import) -> Result<(Vec<Column>, Vec<Column>)> {
     let of = |is_side: bool| columns.iter().filter(move |column| column.is_length() && (column.role == Role::Side) == is_side);
-    if let Some(second) = of(false).nth(1) {
-        return Err(says_the_same(table, second.index, "length"));
-    }
+    fail_if!(let Some(second) = of(false).nth(1), says_the_same(table, second.index, "length"));
     let read = |is_side: bool| of(is_side).map(|column| length_column(table, *column, import)).collect::<Result<Vec<Column>>>();
     let (sides, lengths) = (read(true)?, read(false)?);
     Ok(if lengths.is_empty() { (sides.clone(), sides) } else { (lengths, sides) })
@@ -279,15 +268,13 @@ fn are_places_of_one_crack(names: &[String]) -> bool {
     names.len() > 1 && names.iter().enumerate().all(is_numbered)
 }
 
-/// A column of cycles: one by one where nothing says otherwise.
 fn cycle_column(table: &Table, column: Column, import: &Import) -> Result<Column> {
     let (like, mut given) = (Unit::Cycles(CycleUnit::Cycles), import.cycles.map(Unit::Cycles));
     if (column.unit, given) == (Named::No, None) {
         if let Some((line, text)) = table.preamble.iter().find(|(_, text)| is_of_thousands(text)) {
-            return Err(Fault { line: Some(*line), value: Some(text), ..whole_file(&table.file) }.error(
-                "may give the unit of cycles; the header does not",
-                "set measured.cycle_unit = \"kilocycles\", or \"cycles\" (--cycle-unit), or name the unit in the header",
-            ));
+            let remedy = "set measured.cycle_unit = \"kilocycles\", or \"cycles\" (--cycle-unit), or name the unit in the header";
+            let fault = Fault { line: Some(*line), value: Some(text), ..whole_file(&table.file) };
+            return Err(fault.error("may give the unit of cycles; the header does not", remedy));
         }
         given = Some(like);
     }
@@ -306,11 +293,8 @@ fn load_column(table: &Table, column: Column, import: &Import, warnings: &mut Ve
         let problem = format!("is a varying load (from {first}) in an unknown unit");
         return Err(table.cell_fault(row, column.index).error(problem, remedy));
     }
-    warnings.push(format!(
-        "{}: {} ignored (unknown load unit); the load of the case is used; {remedy}",
-        table.file.display(),
-        table.header[column.index]
-    ));
+    let (file, name) = (table.file.display(), &table.header[column.index]);
+    warnings.push(format!("{file}: {name} ignored (unknown load unit); the load of the case is used; {remedy}"));
     Ok(None)
 }
 
@@ -323,9 +307,7 @@ fn loads(table: &Table, columns: &[Column], import: &Import, warnings: &mut Vec<
     {
         let mut own = columns.iter().copied().filter(|column| column.role == role);
         let Some(column) = own.next() else { continue };
-        if let Some(second) = own.next() {
-            return Err(says_the_same(table, second.index, key));
-        }
+        fail_if!(let Some(second) = own.next(), says_the_same(table, second.index, key));
         if role == Role::Ratio {
             found.push(column);
             continue;
@@ -356,12 +338,10 @@ fn loads(table: &Table, columns: &[Column], import: &Import, warnings: &mut Vec<
     Ok(if says_cycle { (found, Vec::new()) } else { (Vec::new(), found) })
 }
 
-/// Whether a column holds stresses.
 pub(super) fn is_stress(column: &Column) -> bool {
     matches!(column.unit, Named::Is(unit) if unit.is_stress())
 }
 
-/// The line that says which columns of a wide table are not specimens.
 fn not_specimens(table: &Table, columns: &[Column]) -> Option<String> {
     let statistics = columns.iter().filter(|column| column.role == Role::Statistic);
     let names: Vec<&str> = statistics.map(|column| table.header[column.index].as_str()).collect();
@@ -376,14 +356,9 @@ fn not_read(table: &Table, columns: &[Column]) -> Option<String> {
             || matches!((column.role, column.unit), (Role::Other, Named::Is(Unit::Load(_))))
     });
     let names: Vec<&str> = strange.map(|column| table.header[column.index].as_str()).filter(|name| !name.is_empty()).collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "{}: ignored columns: {}; if one is the load of every reading, set measured.columns = {{ force_max = \"...\" }} \
-             (--column force_max=...)",
-            table.file.display(),
-            names.join(", ")
-        )
-    })
+    let (file, ignored) = (table.file.display(), names.join(", "));
+    let remedy = "if one is the load of every reading, set measured.columns = { force_max = \"...\" } (--column force_max=...)";
+    (!names.is_empty()).then(|| format!("{file}: ignored columns: {ignored}; {remedy}"))
 }
 
 fn says_the_same(table: &Table, column: usize, key: &str) -> Error {

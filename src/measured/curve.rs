@@ -4,21 +4,17 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use super::columns::is_stress;
-use perilife_base::error::{Result, input};
+use perilife_base::error::{Error, Result, input};
 use perilife_base::input::LENGTH;
 use perilife_base::table::names::{Column, Role};
 use perilife_base::table::{Fault, Table};
 use perilife_base::units::{MM, round_off};
 use perilife_plate::specimen::{LoadMeasure, Specimen, SpecimenKind};
 
-/// Fewest readings a curve can have.
 pub const READINGS_MIN: usize = 5;
-
 /// Fall of a crack length over the scatter of readings, and over the whole growth, beyond which a reading is a typing error.
 const FALL_SCATTERS: f64 = 10.0;
-/// See [`FALL_SCATTERS`].
 const FALL_SHARE: f64 = 0.02;
-
 /// Slack of window ends against readings, m: `9.0 mm` in a file and in a key need not be the same binary number.
 const LENGTH_SLACK: f64 = 1e-9;
 
@@ -41,7 +37,6 @@ pub struct MeasuredCurve {
     pub left_out: Vec<bool>,
     /// Precision of a reading, m, where the user says it.
     pub precision: Option<f64>,
-    /// Where the readings stand.
     pub source: Source,
 }
 
@@ -49,7 +44,6 @@ pub struct MeasuredCurve {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stated {
     pub role: Role,
-    /// Whether it holds stresses.
     pub is_stress: bool,
     pub column: String,
     /// What a number of the file is multiplied by for SI units.
@@ -75,7 +69,6 @@ pub struct Source {
     pub length_unit: f64,
     /// Whether the file has lengths tip to tip, of which the half was taken.
     pub is_tip_to_tip: bool,
-    /// Whether the specimen has the name of its file.
     pub is_named_by_file: bool,
     /// Cycles of the file at the first reading of a window, which counts them from 0.
     pub cycles_before: f64,
@@ -148,7 +141,6 @@ impl MeasuredCurve {
         self.load_factor.is_empty() && !self.left_out.contains(&true)
     }
 
-    /// Whether the growth up to a reading counts.
     pub fn counts(&self, reading: usize) -> bool {
         self.left_out.get(reading) != Some(&true)
     }
@@ -225,18 +217,26 @@ impl MeasuredCurve {
         Fault { file: &self.source.file, line: self.source.lines.get(reading).copied(), key: None, value: None }
     }
 
+    pub(super) fn wrong_length(&self, reading: usize, problem: impl Into<String>, remedy: impl Into<String>) -> Error {
+        let value = round_off(self.crack_length[reading] / self.source.length_unit).to_string();
+        Fault { key: Some(&self.source.length_column), value: Some(&value), ..self.fault(reading) }.error(problem, remedy)
+    }
+
+    /// File, line and specimen of a reading, to go in front of a message.
+    pub(super) fn place(&self, reading: usize) -> String {
+        format!("{}: line {}: specimen {}", self.source.file.display(), self.line(reading), self.specimen)
+    }
+
     /// Cycles from the first reading to the last.
     pub fn life(&self) -> f64 {
         self.cycles.last().unwrap_or(&0.0) - self.cycles.first().unwrap_or(&0.0)
     }
 }
 
-/// Curves of one or many files.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measured {
     /// One curve per specimen, in the order of the files.
     pub curves: Vec<MeasuredCurve>,
-    /// What the user should know.
     pub warnings: Vec<String>,
 }
 
@@ -313,22 +313,17 @@ impl Measured {
         Ok(())
     }
 
-    /// Takes typing errors out of the curves.
     pub(super) fn exclude_typing_errors(&mut self) {
         let mut left_out = Vec::new();
         for curve in self.curves.iter_mut().filter(|curve| curve.cycles.len() > READINGS_MIN) {
             let errors = curve.typing_errors();
             left_out.extend(errors.iter().map(|&reading| {
                 let before = if reading == 0 { 1 } else { reading - 1 };
+                let [own, earlier] = [reading, before].map(|reading| round_off(curve.crack_length[reading] / MM));
+                let (place, line) = (curve.place(reading), curve.line(before));
                 format!(
-                    "{}: line {}: specimen {}: {} mm, after {} mm on line {}: crack length drops again, likely a typing \
-                     error; excluded from the fit. Correct the number",
-                    curve.source.file.display(),
-                    curve.line(reading),
-                    curve.specimen,
-                    round_off(curve.crack_length[reading] / MM),
-                    round_off(curve.crack_length[before] / MM),
-                    curve.line(before)
+                    "{place}: {own} mm, after {earlier} mm on line {line}: crack length drops again, likely a typing error; \
+                     excluded from the fit. Correct the number"
                 )
             }));
             if !errors.is_empty() {
@@ -344,12 +339,10 @@ impl Measured {
     pub fn check_lengths(&self, limit: f64, limit_name: &str) -> Result<()> {
         for curve in &self.curves {
             let Some(reading) = curve.crack_length.iter().position(|&a| a >= limit) else { continue };
-            let value = format!("{}", round_off(curve.crack_length[reading] / curve.source.length_unit));
-            let fault = Fault { key: Some(&curve.source.length_column), value: Some(&value), ..curve.fault(reading) };
-            return Err(fault.error(
-                format!("is outside the specimen, whose {limit_name} is {} mm", round_off(limit / MM)),
-                "check the number, its unit, and whether the file gives the crack length of the specimen's test standard",
-            ));
+            let problem = format!("is outside the specimen, whose {limit_name} is {} mm", round_off(limit / MM));
+            let remedy =
+                "check the number, its unit, and whether the file gives the crack length of the specimen's test standard";
+            return Err(curve.wrong_length(reading, problem, remedy));
         }
         Ok(())
     }

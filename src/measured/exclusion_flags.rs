@@ -9,13 +9,10 @@ use perilife_base::table::units::{CycleUnit, Unit};
 use perilife_base::table::words::words;
 use perilife_base::table::{Row, Table};
 
-/// Cells that answer what the name of the column asks.
 const YES: &str = "yes y true t 1 x ja j oui si wahr vrai";
-/// See [`YES`].
 const NO: &str = "no n false f 0 nein non falsch faux";
 /// Cells that say whether the reading counts, whatever the name of the column asks.
 const COUNTS: &str = "ok good valid keep kept use used include included accept accepted pass passed";
-/// See [`COUNTS`].
 const COUNTS_NOT: &str = "bad invalid reject rejected outlier exclude excluded discard discarded fail failed";
 /// Further words of remarks on readings that do not count.
 const REMARKS: &str = "void voided unusable ungueltig verworfen ausreisser rejete rejetee invalide rechazado scartato";
@@ -47,15 +44,11 @@ pub(super) fn rejected(table: &Table, read: &[usize]) -> Option<String> {
     };
     let mut found = table.rows.iter().filter_map(of_row);
     let (line, column, cell) = found.next()?;
+    let (file, name, count) = (table.file.display(), &table.header[column], found.count() + 1);
+    let rows = if count == 1 { "row" } else { "rows" };
     Some(format!(
-        "{}:{line}: {} = \"{cell}\" looks like a rejection mark ({}); these readings are used; exclude them by \
-         measured.leave_out, or by a column valid with yes or no",
-        table.file.display(),
-        table.header[column],
-        match found.count() {
-            0 => "1 row".to_owned(),
-            more => format!("{} rows", more + 1),
-        }
+        "{file}:{line}: {name} = \"{cell}\" looks like a rejection mark ({count} {rows}); these readings are used; exclude them \
+         by measured.leave_out, or by a column valid with yes or no"
     ))
 }
 
@@ -101,12 +94,9 @@ pub(super) fn exclude_flagged(table: &mut Table, import: &Import) -> Result<()> 
             if name == "flags" {
                 continue;
             }
+            let (file, line, cell, more) = (table.file.display(), first.line, first.cell(index), open.len() - 1);
             let note = format!(
-                "{}:{}: {name} = \"{}\" is neither yes nor no ({} more cells); these rows are used; write yes or no",
-                table.file.display(),
-                first.line,
-                first.cell(index),
-                open.len() - 1
+                "{file}:{line}: {name} = \"{cell}\" is neither yes nor no ({more} more cells); these rows are used; write yes or no"
             );
             table.notes.push(note);
         }

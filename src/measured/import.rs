@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::shorten;
 use perilife_base::keys::{Field, Key, Shape, Value, key, meant, nearest, refuse};
 use perilife_base::table::names::Role;
@@ -53,7 +53,6 @@ impl LeaveOut {
         before < to - slack && after > from + slack
     }
 
-    /// Line and value, or specimen and cycles.
     pub fn place(&self) -> String {
         let named = |name: &Option<String>, what| name.as_ref().map_or_else(String::new, |name| format!("{what}{name} "));
         let [from, to] = [self.from_cycles, self.to_cycles].map(Option::unwrap_or_default);
@@ -118,13 +117,9 @@ impl ColumnNames {
         };
         let (key, name) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;
         let name = name.trim().trim_matches('"');
-        if name.is_empty() {
-            return Err(refuse("has no column"));
-        }
+        fail_if!(name.is_empty(), refuse("has no column"));
         let key = Self::key(key.trim()).ok_or_else(|| refuse("has an unknown key"))?;
-        if key.1 != Role::Length && self.0.iter().any(|(given, _)| *given == key) {
-            return Err(refuse("repeats a column"));
-        }
+        fail_if!(key.1 != Role::Length && self.0.iter().any(|(given, _)| *given == key), refuse("repeats a column"));
         self.0.push((key, name.to_owned()));
         Ok(())
     }

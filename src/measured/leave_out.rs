@@ -1,12 +1,15 @@
-//! `[measured] leave_out`: growth over some cycles that does not count, with the reason, which stands in every result.
+//! `[measured] leave_out`: rows of a file that are not read, and growth over some cycles that does not count, with the reason, which stands
+//! in every result.
 
 use std::collections::HashMap;
+use std::path::Path;
 
 use super::curve::{Measured, READINGS_MIN};
-use super::import::LeaveOut;
-use perilife_base::error::{Result, input, input_missing};
+use super::exclusion_flags::exclude_flagged;
+use super::import::{Import, LeaveOut};
+use perilife_base::error::{Result, fail_if, input, input_missing};
+use perilife_base::table::{self, Table};
 
-/// Most names of specimens in a message.
 const NAMES_MAX: usize = 20;
 
 impl Measured {
@@ -38,7 +41,6 @@ impl Measured {
         Ok(())
     }
 
-    /// Marks the growth of a window; gives the place of its curve.
     fn mark(&mut self, key: &str, window: &LeaveOut, places: &HashMap<String, usize>) -> Result<usize> {
         let [from_cycles, to_cycles] = [window.from_cycles, window.to_cycles].map(|cycles| cycles.unwrap_or(f64::NAN));
         let unknown = || {
@@ -61,13 +63,45 @@ impl Measured {
         let count = curve.cycles.len();
         let covered = |step: usize| window.covers(curve.cycles[step - 1], curve.cycles[step]);
         let steps: Vec<usize> = (1..count).filter(|&step| covered(step)).collect();
-        if steps.is_empty() {
-            let problem = format!("contains no reading of specimen {}", curve.specimen);
-            let remedy = format!("its readings go from {} to {} cycles", curve.cycles[0], curve.cycles[count - 1]);
-            return Err(input(&format!("{key}.from_cycles"), from_cycles, problem, remedy));
-        }
+        let problem = || format!("contains no reading of specimen {}", curve.specimen);
+        let remedy = || format!("its readings go from {} to {} cycles", curve.cycles[0], curve.cycles[count - 1]);
+        fail_if!(steps.is_empty(), input(&format!("{key}.from_cycles"), from_cycles, problem(), remedy()));
         curve.left_out.resize(count, false);
         steps.into_iter().for_each(|step| curve.left_out[step] = true);
         Ok(place)
     }
+}
+
+/// Cuts the bytes of a file into cells. Rows that are left out by their lines go, and those that the table itself marks as not counting.
+/// Errors: as [`table::read`] and [`take_rows_out`]; a Parquet file.
+pub(super) fn table_of(bytes: &[u8], file: &Path, import: &Import) -> Result<Table> {
+    let remedy = "save the table as CSV or .xlsx";
+    fail_if!(bytes.starts_with(b"PAR1"), table::whole_file(file).error("is a Parquet file, which is not supported", remedy));
+    let mut table = table::read(bytes, file, import)?;
+    take_rows_out(&mut table, &import.left_out)?;
+    exclude_flagged(&mut table, import)?;
+    Ok(table)
+}
+
+/// Takes rows out of a table by their lines.
+/// Errors: a line without a row, or whose row has no such cell.
+fn take_rows_out(table: &mut Table, all: &[LeaveOut]) -> Result<()> {
+    let plain = |text: &str| text.replace(|c: char| c.is_whitespace() || "\",;|".contains(c), "");
+    for (index, one) in all.iter().enumerate().filter(|(_, one)| one.line.is_some()) {
+        let place = table.rows.iter().position(|row| Some(row.line) == one.line);
+        let cells: Vec<&str> = place.iter().flat_map(|&place| &table.rows[place].cells).collect();
+        let value = one.value.as_deref().unwrap_or_default();
+        // Messages cut long rows off.
+        let (given, is_cut) = (plain(value.trim_end_matches("...")), value.ends_with("..."));
+        let is_it = |text: &str| if is_cut { plain(text).starts_with(&given) } else { plain(text) == given };
+        let is_there = one.value.is_some() && cells.iter().copied().chain([&*cells.concat()]).any(is_it);
+        let Some(place) = place.filter(|_| is_there) else {
+            let (line, cells) = (one.line.unwrap_or_default(), place.map_or("no row".to_owned(), |_| cells.join(" | ")));
+            let problem = format!("is not a cell of line {line} of {}, which has {cells}", table.file.display());
+            let remedy = "count lines from 1, the header included, and give the wrong cell";
+            return Err(input(&format!("measured.leave_out[{index}].value"), format!("\"{value}\""), problem, remedy));
+        };
+        table.rows.remove(place);
+    }
+    Ok(())
 }

@@ -6,7 +6,7 @@
 //! Imports `base` and `plate`.
 //!
 //! In the order data flows: what the user says of files (`import`); the `header` that column names make up ([`perilife_base::table::names`]); the cells
-//! of a `table` (cut by [`perilife_base::table`]) without rows that `exclusion_flags` exclude; its `columns`; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`); or `rates` of growth over ΔK.
+//! of a table (cut by [`perilife_base::table`]) without rows that `leave_out` and `exclusion_flags` exclude; its `columns`; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`); or `rates` of growth over ΔK.
 //!
 //! Every complaint names file, line, column and value. A crack length that falls from one reading to the next is reading noise and
 //! accepted; cycles that fall or repeat are a mistake of the file and refused.
@@ -21,13 +21,11 @@ mod exclusion_flags;
 pub mod rates;
 mod wide_rates;
 mod readings;
-mod table;
 
 use std::path::{Path, PathBuf};
 
 pub use columns::{Layout, Series, Shape};
-pub use curve::first_of;
-pub use curve::{Loads, Measured, MeasuredCurve, PROBLEMS_MAX, READINGS_MIN, Source, side_difference_max};
+pub use curve::{Loads, Measured, MeasuredCurve, PROBLEMS_MAX, READINGS_MIN, Source, first_of, side_difference_max};
 pub use import::{ColumnNames, Import, LeaveOut, check_left_out};
 pub use loads::{LoadHistory, SAME_LOAD, ratio_warnings};
 pub use perilife_base::table::names::{Column, Named, Role};
@@ -54,7 +52,7 @@ pub fn read_into(opened: &Opened, files: &[PathBuf], import: &Import) -> Result<
 
 /// Reads the bytes of one file; `file` is only named in messages and, where there is no specimen column, in the curve.
 pub fn parse(bytes: &[u8], file: &Path, import: &Import) -> Result<Measured> {
-    let table = table::read(bytes, file, import)?;
+    let table = leave_out::table_of(bytes, file, import)?;
     let layout = columns::recognise(&table, import)?;
     curves_of(&table, &layout, import.of_plate, &mut Err)
 }
@@ -62,12 +60,9 @@ pub fn parse(bytes: &[u8], file: &Path, import: &Import) -> Result<Measured> {
 /// What a file holds although some of it is wrong.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Survey {
-    /// Column names as written.
     pub header: Vec<String>,
-    /// Cells of the first rows below them.
     pub first_rows: Vec<Vec<String>>,
     pub layout: Option<Layout>,
-    /// Curves of the good rows.
     pub measured: Measured,
     /// What is wrong, row by row, up to [`PROBLEMS_MAX`].
     pub problems: Vec<InputError>,
@@ -85,7 +80,7 @@ pub fn survey(bytes: &[u8], file: &Path, import: &Import) -> Survey {
         other => Err(other),
     };
     let mut look = || {
-        let table = table::read(bytes, file, import)?;
+        let table = leave_out::table_of(bytes, file, import)?;
         survey.header.clone_from(&table.header);
         survey.first_rows = table.first_cells();
         let layout = columns::recognise(&table, import)?;

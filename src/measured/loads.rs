@@ -6,12 +6,11 @@
 use std::collections::BTreeMap;
 
 use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, first_of};
-use perilife_base::error::{Result, input_missing};
+use perilife_base::error::{Result, fail_if, input_missing};
 use perilife_base::linear_fit::line;
 use perilife_base::table::Fault;
 use perilife_base::table::names::Role;
-use perilife_base::units::round_off;
-use perilife_base::units::{KN, MM, MPA, MPA_SQRT_M};
+use perilife_base::units::{KN, MM, MPA, MPA_SQRT_M, round_off};
 use perilife_plate::loading::{Loading, SAME_RATIO};
 use perilife_plate::material::Material;
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
@@ -19,15 +18,11 @@ use perilife_plate::specimen::{LengthConvention, LoadMeasure, Specimen};
 
 /// Loads within this share of each other are equal: machines hold theirs to one percent.
 pub const SAME_LOAD: f64 = 0.01;
-
 /// Share by which a column may differ from the case: formulas for K agree to less.
 const STATED_DIFFERENCE: f64 = 0.02;
-
 /// Share of the plate, multiple of the toughness and leap of K beyond which a reading is of the fracture and not of fatigue.
 const LIGAMENT_LEFT: f64 = 0.95;
-/// See [`LIGAMENT_LEFT`].
 const TOUGHNESS_FACTOR: f64 = 1.5;
-/// See [`LIGAMENT_LEFT`].
 const LEAP_OF_K: f64 = 2.0;
 
 impl Measured {
@@ -68,14 +63,9 @@ impl Measured {
     /// Sets the readings against the specimen and the load of a case.
     /// Errors: readings beyond the specimen; loads that it cannot have.
     pub fn compare_with(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<()> {
-        if let Some(course) = loading.course() {
-            let problem = "depends on crack length; the load of readings comes from their own columns";
-            return Err(input_missing(
-                &course.key,
-                problem,
-                "give one number, and the load of every reading as a column such as force_max_n",
-            ));
-        }
+        let problem = "depends on crack length; the load of readings comes from their own columns";
+        let remedy = "give one number, and the load of every reading as a column such as force_max_n";
+        fail_if!(let Some(course) = loading.course(), input_missing(&course.key, problem, remedy));
         let (limit, limit_name) = specimen.length_limit();
         self.take_whole_lengths(specimen);
         self.exclude_typing_errors();
@@ -105,12 +95,9 @@ impl Measured {
             |curve: &&MeasuredCurve| (curve.crack_length[0] / specimen.crack_length - 2.0).abs() < STATED_DIFFERENCE / 4.0;
         let double = self.curves.iter().filter(|_| specimen.kind.has_half_length()).find(is_double);
         double.map_or(Ok(()), |curve| {
-            let value = round_off(curve.crack_length[0] / curve.source.length_unit).to_string();
-            let fault = Fault { key: Some(&curve.source.length_column), value: Some(&value), ..curve.fault(0) };
-            Err(fault.error(
-                "is the full length 2a; the case uses the half length a",
-                "name a column of full lengths 2a (mm), or give the length at the first reading as specimen.crack_length_mm",
-            ))
+            let remedy =
+                "name a column of full lengths 2a (mm), or give the length at the first reading as specimen.crack_length_mm";
+            Err(curve.wrong_length(0, "is the full length 2a; the case uses the half length a", remedy))
         })
     }
 
@@ -131,11 +118,10 @@ impl Measured {
                 _ if curve.crack_length[reading] > LIGAMENT_LEFT * limit => {
                     Some(format!("{:.3} of the {limit_name}", curve.crack_length[reading] / limit))
                 }
-                Some(toughness) if k_max(reading) > TOUGHNESS_FACTOR * toughness => Some(format!(
-                    "K_max {:.1} MPa√m, fracture toughness {:.1} MPa√m",
-                    k_max(reading) / MPA_SQRT_M,
-                    toughness / MPA_SQRT_M
-                )),
+                Some(toughness) if k_max(reading) > TOUGHNESS_FACTOR * toughness => {
+                    let [k_max, toughness] = [k_max(reading), toughness].map(|k| k / MPA_SQRT_M);
+                    Some(format!("K_max {k_max:.1} MPa√m, fracture toughness {toughness:.1} MPa√m"))
+                }
                 None if is_last(reading) && k_max(reading) > LEAP_OF_K * k_max(reading - 1) && !follows(curve, &k_max) => {
                     let times = k_max(reading) / k_max(reading - 1);
                     Some(format!("K_max is {times:.1} times that of the previous reading, and the growth differs"))
@@ -144,23 +130,14 @@ impl Measured {
             };
             let Some((first, why)) = (0..curve.cycles.len()).find_map(|reading| Some((reading, why(reading)?))) else { continue };
             if first < READINGS_MIN {
-                let value = round_off(curve.crack_length[first] / curve.source.length_unit).to_string();
-                let fault = Fault { key: Some(&curve.source.length_column), value: Some(&value), ..curve.fault(first) };
                 let problem = format!("is at fracture ({why}); only {first} readings precede it");
-                return Err(fault.error(
-                    problem,
-                    format!("give at least {READINGS_MIN} readings of fatigue growth; check the unit and the load"),
-                ));
+                let remedy = format!("give at least {READINGS_MIN} readings of fatigue growth; check the unit and the load");
+                return Err(curve.wrong_length(first, problem, remedy));
             }
             let more = curve.cycles.len() - first - 1;
-            left_out.push(format!(
-                "{}: line {}: specimen {}: reading at {} mm is at fracture ({why}); excluded{}",
-                curve.source.file.display(),
-                curve.line(first),
-                curve.specimen,
-                round_off(curve.crack_length[first] / MM),
-                if more > 0 { format!(", with the {more} after it") } else { String::new() }
-            ));
+            let more = if more > 0 { format!(", with the {more} after it") } else { String::new() };
+            let (place, length) = (curve.place(first), round_off(curve.crack_length[first] / MM));
+            left_out.push(format!("{place}: reading at {length} mm is at fracture ({why}); excluded{more}"));
             *curve = curve.of_readings(&(0..first).collect::<Vec<_>>());
         }
         self.warnings.extend(first_of(left_out));
@@ -266,10 +243,9 @@ fn compare(curve: &MeasuredCurve, specimen: &Specimen, loading: &Loading) -> Res
         let value = round_off(stated.values[reading] / stated.factor).to_string();
         let of_case = round_off(of_case(reading) / stated.factor);
         let fault = Fault { key: Some(&stated.column), value: Some(&value), ..curve.fault(reading) };
-        return Err(fault.error(
-            format!("is {of_case} by the case, at {:.4} mm of specimen {}", curve.crack_length[reading] / MM, curve.specimen),
-            "correct the specimen and loading of the case, or correct or remove the column",
-        ));
+        let (length, name) = (curve.crack_length[reading] / MM, &curve.specimen);
+        let remedy = "correct the specimen and loading of the case, or correct or remove the column";
+        return Err(fault.error(format!("is {of_case} by the case, at {length:.4} mm of specimen {name}"), remedy));
     }
     Ok(())
 }
@@ -324,7 +300,6 @@ impl MeasuredCurve {
         (0..self.cycles.len()).map(of_step).collect()
     }
 
-    /// Loads over the growth of the crack.
     pub fn load_history(&self) -> LoadHistory {
         let mut history =
             LoadHistory { lengths: Vec::with_capacity(self.cycles.len()), factors: Vec::with_capacity(self.cycles.len()) };

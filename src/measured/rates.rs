@@ -9,19 +9,16 @@ use super::columns::column_in_unit;
 use super::exclusion_flags::{counts, rejected};
 use super::header::columns_of;
 use super::import::{ColumnNames, Import};
+use super::leave_out::table_of;
 use super::readings::value;
-use super::table;
 use super::wide_rates;
 use perilife_base::error::{Result, input_missing};
 use perilife_base::input::{Folder, number};
 use perilife_base::keys::{Field, Key, Shape, Value, key, refuse, section};
 use perilife_base::table::decimal::decide;
 use perilife_base::table::names::{Column, Named, Role};
-use perilife_base::table::{
-    Decimal, Sheet,
-    units::{IntensityUnit, RateUnit, Unit},
-};
-use perilife_base::table::{Fault, Row, Table, whole_file};
+use perilife_base::table::units::{IntensityUnit, RateUnit, Unit};
+use perilife_base::table::{Decimal, Fault, Row, Sheet, Table, whole_file};
 use perilife_base::units::MM_PER_CYCLE;
 use perilife_plate::loading::SAME_RATIO;
 
@@ -34,21 +31,18 @@ perilife_base::kinds! {
     }
 }
 
-/// A flag of `perilife rates` that speaks against nothing.
 const HARMLESS: &str = "load_changes";
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct RateRow {
     /// Test it belongs to: its file, and the specimen where the file names one. Rows of a test follow each other.
     pub series: String,
-    /// Where it stands, for messages.
     pub place: String,
     pub line: usize,
     /// Tensile ΔK, Pa√m.
     pub delta_k: f64,
     /// da/dN, m/cycle.
     pub rate: f64,
-    /// Stress ratio R.
     pub ratio: f64,
 }
 
@@ -64,19 +58,14 @@ impl RateRow {
     }
 }
 
-/// Rates of a table, and how many of its rows something speaks against, which are left out.
+/// Rates of a table, names and units of its columns of ΔK and da/dN, and how many of its rows are left out by a flag of `perilife rates`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RateTable {
     pub rows: Vec<RateRow>,
-    /// Rows that carry a flag of `perilife rates`.
     pub flagged: usize,
-    /// What else the user should know.
     pub warnings: Vec<String>,
-    /// Names of the columns of ΔK and da/dN.
     pub columns: [String; 2],
-    /// Whether the table, or the user, says its stress ratio.
     pub says_ratio: bool,
-    /// Units of ΔK and da/dN, for those who read a result.
     pub units: [&'static str; 2],
     /// Which ΔK the rows at negative R were said to have; `None` where there are none.
     pub range: Option<RangeKind>,
@@ -154,17 +143,17 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
         ..Import::default()
     };
     let wide = wide_rates::as_table(bytes, file).transpose()?;
-    let mut cells = table::read(wide.as_ref().map_or(bytes, |text| text.as_bytes()), file, &import)?;
+    let mut cells = table_of(wide.as_ref().map_or(bytes, |text| text.as_bytes()), file, &import)?;
     wide_rates::below_each_other(&mut cells, &import);
     let columns = columns_of(&cells.header, &cells.names, &import);
     let of = |role: Role| {
         let mut own = columns.iter().copied().filter(move |column| column.role == role);
         let first = own.next();
         match own.next() {
-            Some(second) => Err(cells.header_fault(second.index).error(
-                "duplicates an earlier column",
-                "select one by { file = \"...\", columns = { delta_k = \"...\", rate = \"...\" } }",
-            )),
+            Some(second) => {
+                let remedy = "select one by { file = \"...\", columns = { delta_k = \"...\", rate = \"...\" } }";
+                Err(cells.header_fault(second.index).error("duplicates an earlier column", remedy))
+            }
             None => Ok(first),
         }
     };
@@ -212,14 +201,8 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
                 return Err(cells.cell_fault(row, column.index).error("is empty", remedy));
             }
             let size = value(&cells, row, column, decimal)?;
-            let fault = cells.cell_fault(row, column.index);
-            match size > 0.0 {
-                true => Ok(size),
-                false => Err(fault.error(
-                    "is not above zero",
-                    "remove rows without growth; name logarithms as such, for example log10 da/dN (mm/cycle)",
-                )),
-            }
+            let remedy = "remove rows without growth; name logarithms as such, for example log10 da/dN (mm/cycle)";
+            if size > 0.0 { Ok(size) } else { Err(cells.cell_fault(row, column.index).error("is not above zero", remedy)) }
         };
         let of = |column: Option<Column>| column.map(|column| value(&cells, row, column, decimal)).transpose();
         let [delta_k, k_max] = [delta_k.map(above_zero).transpose()?, k_max.map(above_zero).transpose()?];
@@ -262,10 +245,9 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
     if let Some(row) = table.rows.iter().find(|row| row.ratio < 0.0) {
         let Some(range) = keys.delta_k else {
             let fault = Fault { line: Some(row.line), key: Some("delta_k"), ..whole_file(file) };
-            return Err(fault.error(
-                format!("R = {}: is ΔK the full range (1 − R) K_max or K_max (ASTM E647)?", row.ratio),
-                "set delta_k = \"full\" (NASGRO and many laboratories) or \"tensile\" (ASTM E647, `perilife rates`)",
-            ));
+            let problem = format!("R = {}: is ΔK the full range (1 − R) K_max or K_max (ASTM E647)?", row.ratio);
+            let remedy = "set delta_k = \"full\" (NASGRO and many laboratories) or \"tensile\" (ASTM E647, `perilife rates`)";
+            return Err(fault.error(problem, remedy));
         };
         table.range = Some(range);
     }
@@ -317,7 +299,6 @@ fn without_columns(table: &Table) -> perilife_base::error::Error {
     )
 }
 
-/// The error of rates without a stress ratio.
 pub fn lacks_ratio(file: &str, key: &str) -> perilife_base::error::Error {
     let remedy = format!("add a column stress_ratio, or write {{ file = \"{file}\", stress_ratio = ... }}");
     input_missing(key, "is not a column, and no stress_ratio is set for the file", remedy)

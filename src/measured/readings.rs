@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::columns::{Layout, Series, Shape, is_stress};
 use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, Source, Stated, first_of};
-use perilife_base::error::{Error, Result};
+use perilife_base::error::{Error, Result, fail_if};
 use perilife_base::linear_fit::line;
 use perilife_base::table::Decimal;
 use perilife_base::table::names::{Column, Role};
@@ -15,10 +15,8 @@ use perilife_plate::specimen::LoadMeasure;
 
 /// More cycles than any test has run: beyond it the unit is wrong.
 const CYCLES_MAX: f64 = 1e15;
-
 /// Longer than any specimen, m: beyond it the unit is wrong.
 const LENGTH_MAX: f64 = 100.0;
-
 /// What is done about a bad row: an error ends the reading.
 type Fate<'a> = &'a mut dyn FnMut(Error) -> Result<()>;
 
@@ -39,24 +37,17 @@ pub(super) fn curves_of(table: &Table, layout: &Layout, of_plate: bool, fate: Fa
         let stands = curve.crack_length.iter().all(|length| *length <= curve.crack_length[0]) && curve.cycles.len() > 1;
         let (count, least) = (curve.cycles.len(), if of_plate || stands { 1 } else { READINGS_MIN });
         if count < least {
-            fate(specimen().error(
-                format!("has {count} reading{}", if count == 1 { "" } else { "s" }),
-                format!("give at least {least} readings for every specimen"),
-            ))?;
+            let problem = format!("has {count} reading{}", if count == 1 { "" } else { "s" });
+            fate(specimen().error(problem, format!("give at least {least} readings for every specimen")))?;
         } else if layout.shape == Shape::WideLengths && curve.crack_length.last() <= curve.crack_length.first() {
-            fate(specimen().error(
-                "does not increase: not a crack length",
-                "remove columns of other quantities from a wide table, or set measured.columns.length",
-            ))?;
+            let remedy = "remove columns of other quantities from a wide table, or set measured.columns.length";
+            fate(specimen().error("does not increase: not a crack length", remedy))?;
         }
         let falls = curve.crack_length.windows(2).filter(|pair| pair[1] < pair[0]).count();
         if falls > 0 {
-            falling.push(format!(
-                "{}: specimen {}: crack length drops at {falls} of {} readings (treated as noise)",
-                table.file.display(),
-                curve.specimen,
-                curve.cycles.len()
-            ));
+            let (file, name) = (table.file.display(), &curve.specimen);
+            falling
+                .push(format!("{file}: specimen {name}: crack length drops at {falls} of {count} readings (treated as noise)"));
         }
     }
     measured.warnings.extend(first_of(falling));
@@ -131,18 +122,12 @@ fn add_reading(curve: &mut MeasuredCurve, table: &Table, row: &Row, decimal: Dec
     let mut a = 0.0;
     for &column in &series.lengths {
         let on_side = number(column)?;
-        if on_side <= 0.0 {
-            let remedy = "give the crack length as the test standard of the specimen defines it";
-            return Err(fault(column).error("is not above 0", remedy));
-        }
+        let remedy = "give the crack length as the test standard of the specimen defines it";
+        fail_if!(on_side <= 0.0, fault(column).error("is not above 0", remedy));
         a += on_side / series.lengths.len() as f64;
     }
-    if n < 0.0 {
-        return Err(fault(cycles).error("is negative", "count cycles from 0 upwards"));
-    }
-    if n > CYCLES_MAX {
-        return Err(fault(cycles).error("is more than 1e15 cycles", "check the number and its unit"));
-    }
+    fail_if!(n < 0.0, fault(cycles).error("is negative", "count cycles from 0 upwards"));
+    fail_if!(n > CYCLES_MAX, fault(cycles).error("is more than 1e15 cycles", "check the number and its unit"));
     match curve.cycles.last() {
         Some(&before) if n == before => {
             let remedy = "remove duplicate cycle counts";
@@ -155,9 +140,7 @@ fn add_reading(curve: &mut MeasuredCurve, table: &Table, row: &Row, decimal: Dec
         }
         _ => {}
     }
-    if a > LENGTH_MAX {
-        return Err(fault(series.lengths[0]).error("is more than 100 m", "check the number and its unit"));
-    }
+    fail_if!(a > LENGTH_MAX, fault(series.lengths[0]).error("is more than 100 m", "check the number and its unit"));
     let sides = series.sides.iter().map(|side| number(*side)).collect::<Result<Vec<f64>>>()?;
     let load = load(table, row, decimal, series)?;
     if sides.len() > 1 {

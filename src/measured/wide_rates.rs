@@ -9,16 +9,14 @@ use quick_xml::events::{BytesStart, Event};
 
 use super::header::{columns_of, ratio_of_name};
 use super::import::Import;
-use perilife_base::error::Result;
+use perilife_base::error::{Result, fail_if};
 use perilife_base::table::names::{Named, Role};
 use perilife_base::table::units::{RateUnit, Unit};
 use perilife_base::table::{Fault, Row, Table, whole_file};
 
 /// A rate with its ΔK at every stress ratio, in the units of the file.
 type WideRow = (f64, Vec<f64>);
-/// Stress ratios, and rows with a ΔK at each.
 type Wide = (Vec<f64>, Vec<WideRow>);
-/// A number by the place of its column.
 type Placed = (usize, f64);
 
 /// The rows of a file of such a kind as a table with its units in the header; `None` of other files.
@@ -158,9 +156,7 @@ fn lkpx(bytes: &[u8], file: &Path) -> Result<(Wide, &'static str)> {
         .iter()
         .filter_map(|row| Some((of(row, 1)?, ratios.iter().map(|(place, _)| of(row, *place).unwrap_or(0.0)).collect())))
         .collect();
-    if ratios.is_empty() || wide.is_empty() {
-        return Err(whole_file(file).error("has no table of rates (tlookup)", REMEDY));
-    }
+    fail_if!(ratios.is_empty() || wide.is_empty(), whole_file(file).error("has no table of rates (tlookup)", REMEDY));
     let header = if is_si { "delta_k_mpa_sqrt_m,da_dn_m_per_cycle" } else { "delta_k_ksi_sqrt_in,da_dn_in_per_cycle" };
     Ok(((ratios.into_iter().map(|(_, ratio)| ratio).collect(), wide), header))
 }

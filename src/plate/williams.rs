@@ -6,12 +6,9 @@
 
 use crate::material::{Material, Plane};
 
-/// Symmetry of an eigenfunction about the crack plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Symmetry {
-    /// Opens the crack.
     Opening,
-    /// Slides the faces.
     Sliding,
 }
 
@@ -27,8 +24,6 @@ pub struct Elasticity {
 }
 
 impl Elasticity {
-    /// Constants of a material.
-    #[inline]
     pub fn of(material: &Material) -> Self {
         let nu = material.poisson_ratio;
         let kappa = match material.plane {
@@ -40,7 +35,6 @@ impl Elasticity {
     }
 
     /// Those of another material, E in Pa, in the same plane state.
-    #[inline]
     pub fn another(&self, youngs_modulus: f64, poisson_ratio: f64) -> Self {
         Elasticity::of(&Material::elastic(youngs_modulus, poisson_ratio, self.plane))
     }
@@ -78,7 +72,6 @@ fn mutual_energy(stress: &[f64; 3], auxiliary: &[[f64; 2]; 2]) -> f64 {
     stress[0] * auxiliary[0][0] + stress[1] * auxiliary[1][1] + stress[2] * (auxiliary[0][1] + auxiliary[1][0])
 }
 
-/// An eigenfunction: order n and symmetry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Eigenfunction {
     /// Order n; displacement goes with r^(n/2).
@@ -171,7 +164,6 @@ impl PolarPoint {
 }
 
 /// Coefficient of the n = 1 function over the factor it stands for: K_I = a₁ √(2π), K_II = -b₁ √(2π).
-#[inline]
 pub fn coefficient_of_unit_factor(symmetry: Symmetry) -> f64 {
     let size = 1.0 / (2.0 * std::f64::consts::PI).sqrt();
     match symmetry {

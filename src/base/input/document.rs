@@ -9,16 +9,14 @@ use toml::{Table, Value};
 use super::folder::{Folder, OpenedFile, STREAM, text_of};
 use super::slice::{path_steps, shorten, value_at};
 use super::us_keys::{Written, as_written, metric, to_metric, twin};
-use crate::error::{Error, InputError, Result, input, input_missing};
+use crate::error::{Error, InputError, Result, fail_if, input, input_missing};
 use crate::keys::nearest;
 
-/// What is said of a value that an option overrides.
 const BY_SET: &str = " (value given by --set)";
 
 /// A parsed input file that still knows where everything stands in the text.
 #[derive(Debug, Clone)]
 pub struct Document {
-    /// Name of the case: the file stem.
     pub name: String,
     /// Where the files lie that it names.
     pub folder: Folder,
@@ -89,7 +87,6 @@ impl Document {
         Error::Input(Box::new(InputError { more: all, ..first }))
     }
 
-    /// The same of one mistake.
     fn locate_one(&self, trouble: InputError) -> InputError {
         let mut trouble = Box::new(trouble);
         // An option of the command line stands in no file.
@@ -119,7 +116,6 @@ impl Document {
         self.read_units().map_err(|error| self.locate(error))
     }
 
-    /// Makes the table anew from what was written.
     fn read_units(&mut self) -> Result<()> {
         let mut table = self.as_given.clone();
         self.written = to_metric(&mut table)?;
@@ -127,21 +123,14 @@ impl Document {
         Ok(())
     }
 
-    /// Applies one override.
     fn set(&mut self, text: &str) -> Result<()> {
         let refuse = |problem: &str| {
-            input(
-                "--set",
-                format!("\"{text}\""),
-                problem,
-                "write --set section.key=value, for example --set model.spacing_mm=0.5",
-            )
+            let remedy = "write --set section.key=value, for example --set model.spacing_mm=0.5";
+            input("--set", format!("\"{text}\""), problem, remedy)
         };
         let (key, value) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;
         let (key, value) = (key.trim(), value.trim());
-        if value.is_empty() {
-            return Err(refuse("has no value"));
-        }
+        fail_if!(value.is_empty(), refuse("has no value"));
         let other = key.rsplit_once('.').and_then(|(above, last)| Some(format!("{above}.{}", twin(last)?)));
         let is_set = |other: &String| value_at(&Value::Table(self.as_given.clone()), other).is_some();
         if let Some(other) = other.filter(|other| self.overridden.contains(&metric(key)) && is_set(other)) {
@@ -165,9 +154,7 @@ impl Document {
     fn put_as_given(&mut self, key: &str, value: Value) -> std::result::Result<(), &'static str> {
         const NO_TABLE: &str = "its parent is not a table";
         let steps = path_steps(key);
-        if steps.len() < 2 || key.split('.').any(|step| step.trim().is_empty()) {
-            return Err("expected SECTION.KEY=VALUE");
-        }
+        fail_if!(steps.len() < 2 || key.split('.').any(|step| step.trim().is_empty()), "expected SECTION.KEY=VALUE");
         let (last, parents) = (&steps[steps.len() - 1], &steps[..steps.len() - 1]);
         let mut place = self.as_given.entry(parents[0].clone()).or_insert_with(|| Value::Table(Table::new()));
         for step in &parents[1..] {
@@ -261,9 +248,7 @@ impl<'t> Sections<'t> {
                     nearest(name, known.iter().copied()).map_or_else(String::new, |near| format!("did you mean [{near}]? "));
                 return Err(input(name, shorten(value), what, format!("{near}known sections: {}", known.join(", "))));
             }
-            if !value.is_table() {
-                return Err(input(name, shorten(value), "is not a section", format!("add a section [{name}]")));
-            }
+            fail_if!(!value.is_table(), input(name, shorten(value), "is not a section", format!("add a section [{name}]")));
         }
         Ok(Sections { table, empty: Value::Table(Table::new()) })
     }
@@ -277,7 +262,6 @@ impl<'t> Sections<'t> {
         self.given(section).unwrap_or(&self.empty)
     }
 
-    /// A section that may be left out.
     pub fn given(&self, section: &str) -> Option<&Value> {
         self.table.get(section)
     }

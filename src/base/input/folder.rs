@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use sha2::{Digest, Sha256};
 
-use crate::error::{Error, Result, input, input_missing};
+use crate::error::{Error, Result, fail_if, input, input_missing};
 
 /// A place that relative names start from, and what was opened through it.
 #[derive(Debug, Clone)]
@@ -37,7 +37,6 @@ impl Folder {
         Folder::at_hand([])
     }
 
-    /// Files given with their content.
     pub fn at_hand(files: impl IntoIterator<Item = (String, Vec<u8>)>) -> Self {
         Folder { disk: None, at_hand: Arc::new(files.into_iter().collect()), opened: Opened::default() }
     }
@@ -53,7 +52,6 @@ impl Folder {
         &self.opened
     }
 
-    /// What messages call a file.
     pub fn path(&self, name: &str) -> PathBuf {
         match &self.disk {
             Some(folder) if !self.at_hand.contains_key(name) => folder.join(name),
@@ -117,19 +115,16 @@ impl FileId {
     }
 }
 
-/// A file as it was read.
 #[derive(Debug, Clone)]
 pub struct OpenedFile {
     /// As the user or the input file names it.
     pub name: String,
-    /// Where it lay, if on disk.
     pub path: Option<PathBuf>,
     pub id: Option<FileId>,
     pub content: Arc<[u8]>,
 }
 
 impl OpenedFile {
-    /// SHA-256 of its bytes, hexadecimal.
     pub fn sha256(&self) -> String {
         sha256(&self.content)
     }
@@ -147,7 +142,6 @@ pub fn sha256(bytes: &[u8]) -> String {
 #[derive(Debug, Clone, Default)]
 pub struct Opened(Arc<Mutex<Provenance>>);
 
-/// What an input was made of.
 #[derive(Debug, Clone, Default)]
 pub struct Provenance {
     /// Every file that was read, in order, each once; the first is the input itself.
@@ -201,19 +195,16 @@ fn read(path: &Path) -> Result<(Vec<u8>, Option<FileId>)> {
     read().map_err(|error| Error::file(path, "cannot read", error))
 }
 
-/// All of standard input, which can be read once.
 fn stdin() -> Result<Vec<u8>> {
     static IS_READ: AtomicBool = AtomicBool::new(false);
-    if IS_READ.swap(true, Ordering::Relaxed) {
-        return Err(input("file", STREAM, "standard input was already read", "name it once, and files for the others"));
-    }
+    let remedy = "name it once, and files for the others";
+    fail_if!(IS_READ.swap(true, Ordering::Relaxed), input("file", STREAM, "standard input was already read", remedy));
     let mut content = Vec::new();
     let read = std::io::stdin().lock().read_to_end(&mut content);
     read.map_err(|error| Error::file(Path::new(STREAM), "cannot read", error))?;
     Ok(content)
 }
 
-/// Bytes of a file as text.
 pub(super) fn text_of(bytes: Vec<u8>, path: &Path) -> Result<String> {
     String::from_utf8(bytes).map_err(|error| {
         let message = format!("is not UTF-8 text (byte {})", error.utf8_error().valid_up_to() + 1);

@@ -1,6 +1,6 @@
 //! Physical quantities of input files: unit, range of reason, conversion to SI.
 
-use crate::error::{Result, input};
+use crate::error::{Result, fail_if, input};
 use crate::units::{GPA, MM, MPA, MPA_SQRT_M};
 
 /// A kind of number in an input file.
@@ -13,9 +13,7 @@ pub struct Quantity {
     pub what: &'static str,
     /// Unit as in the key, may be empty.
     pub unit: &'static str,
-    /// Smallest value accepted, in that unit.
     pub low: f64,
-    /// Largest value accepted, in that unit.
     pub high: f64,
     /// SI units in one of that unit.
     pub si: f64,
@@ -31,11 +29,9 @@ pub const FORCE: Quantity = Quantity { what: "a force", unit: "N", low: 1e-6, hi
 pub const FORCE_KN: Quantity = Quantity { what: "a force", unit: "kN", low: 1e-9, high: 1e7, si: crate::units::KN };
 pub const INTENSITY: Quantity = Quantity { what: "a stress intensity", unit: "MPa√m", low: 1e-9, high: 1e6, si: MPA_SQRT_M };
 pub const FRACTURE_ENERGY: Quantity = Quantity { what: "an energy", unit: "J/m²", low: 1e-6, high: 1e12, si: 1.0 };
-
 pub const DENSITY: Quantity = Quantity { what: "a density", unit: "kg/m³", low: 1e-3, high: 1e6, si: 1.0 };
 pub const TIME: Quantity = Quantity { what: "a time", unit: "s", low: 1e-15, high: 1e6, si: 1.0 };
 
-/// A plain number within bounds.
 pub const fn number(what: &'static str, low: f64, high: f64) -> Quantity {
     Quantity { what, unit: "", low, high, si: 1.0 }
 }
@@ -43,15 +39,9 @@ pub const fn number(what: &'static str, low: f64, high: f64) -> Quantity {
 impl Quantity {
     /// The value of `key` in SI units, or words about what is wrong with it.
     pub fn read(&self, key: &str, value: f64) -> Result<f64> {
-        if !value.is_finite() {
-            return Err(input(key, value, "is not a finite number", self.remedy()));
-        }
-        if value <= 0.0 && self.low > 0.0 {
-            return Err(input(key, value, "must be above zero", self.remedy()));
-        }
-        if value < self.low || value > self.high {
-            return Err(input(key, value, "is out of range", self.remedy()));
-        }
+        fail_if!(!value.is_finite(), input(key, value, "is not a finite number", self.remedy()));
+        fail_if!(value <= 0.0 && self.low > 0.0, input(key, value, "must be above zero", self.remedy()));
+        fail_if!(value < self.low || value > self.high, input(key, value, "is out of range", self.remedy()));
         Ok(value * self.si)
     }
 
@@ -60,7 +50,6 @@ impl Quantity {
         value.map(|value| self.read(key, value)).transpose()
     }
 
-    /// What would be right.
     pub fn remedy(&self) -> String {
         let text = format!("give {} between {} and {} {}", self.what, self.low, self.high, self.unit);
         text.trim_end().to_owned()

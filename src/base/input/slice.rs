@@ -48,7 +48,6 @@ pub(super) fn path_steps(path: &str) -> Vec<String> {
     path.split(['.', '[']).map(|step| step.trim_end_matches(']').to_owned()).filter(|step| !step.is_empty()).collect()
 }
 
-/// A number, whole or not.
 pub fn number_of(value: &Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
 }
@@ -59,7 +58,6 @@ pub fn shorten(value: &Value) -> String {
     if text.chars().count() <= 80 { text } else { text.chars().take(77).chain("...".chars()).collect() }
 }
 
-/// serde's message to key, value, problem and remedy.
 fn explain(error: &toml::de::Error, value: &Value, path: &str) -> Error {
     let message = error.message();
     let whole = error.to_string();

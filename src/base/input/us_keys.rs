@@ -9,12 +9,10 @@ use crate::units::{INCH, MM};
 
 use super::slice::{number_of, path_steps, shorten, value_at};
 
-/// A key that was given in US units.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Written {
-    /// Its place as readers name it, `specimen.width_mm`.
+    /// Its place as readers name it, `specimen.width_mm`, and in the file, `specimen.width_in`.
     metric: String,
-    /// Its place in the file, `specimen.width_in`.
     us: String,
     value: Value,
 }
@@ -72,7 +70,6 @@ fn below(table: &mut Table, above: &str, written: &mut Vec<Written>) -> Result<(
     Ok(())
 }
 
-/// Tables in lists.
 fn inside(value: &mut Value, path: &str, written: &mut Vec<Written>) -> Result<()> {
     match value {
         Value::Table(table) => below(table, path, written),

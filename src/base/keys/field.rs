@@ -2,14 +2,13 @@
 
 use toml::Value;
 
-use super::{Given, Key, Need, Shape, nearest};
+use super::{Given, Key, Need, Shape, meant, nearest};
 use crate::error::{Error, Result, input};
 use crate::input::{OF_SCENES, PLANNED, number_of, shorten};
-use crate::kinds::{Named, use_one_of};
+use crate::kinds::Named;
 
 /// A type of a field of a section: which values it takes, and how it is read.
 pub trait Field: Sized {
-    /// Values that it takes.
     const SHAPE: Shape;
     const NEED: Need = Need::Required;
 
@@ -100,25 +99,30 @@ macro_rules! whole {
 }
 whole!(usize, u64);
 
-impl Field for bool {
-    const SHAPE: Shape = Shape::Flag;
-    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
-        value.as_bool().map_or_else(|| refuse(key, path, value, Self::SHAPE), Ok)
-    }
-}
+/// A number in the unit of its key, whose range its reader looks at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unjudged(pub f64);
 
-impl Field for String {
-    const SHAPE: Shape = Shape::Text;
-    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
-        value.as_str().map_or_else(|| refuse(key, path, value, Self::SHAPE), |text| Ok(text.to_owned()))
-    }
+/// Types that a value is, or is not.
+macro_rules! values {
+    ($($T:ty: $shape:expr, $of:expr;)+) => { $(
+        impl Field for $T {
+            const SHAPE: Shape = $shape;
+            fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+                let of: fn(&Value) -> Option<$T> = $of;
+                of(value).map_or_else(|| refuse(key, path, value, Self::SHAPE), Ok)
+            }
+        }
+    )+ };
 }
-
-impl Field for std::path::PathBuf {
-    const SHAPE: Shape = Shape::Text;
-    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
-        String::take(key, path, value).map(Into::into)
-    }
+values! {
+    bool: Shape::Flag, Value::as_bool;
+    String: Shape::Text, |value| value.as_str().map(str::to_owned);
+    std::path::PathBuf: Shape::Text, |value| value.as_str().map(Into::into);
+    toml::Table: Shape::Table(&[]), |value| value.as_table().cloned();
+    Unjudged: Shape::Number, |value| number_of(value).map(Unjudged);
+    // What its reader looks at by itself.
+    Value: Shape::Other("a valid value"), |value| Some(value.clone());
 }
 
 impl Field for std::collections::BTreeMap<String, f64> {
@@ -126,21 +130,6 @@ impl Field for std::collections::BTreeMap<String, f64> {
     fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
         let table = toml::Table::take(key, path, value)?;
         table.iter().map(|(name, value)| Ok((name.clone(), f64::take(key, &format!("{path}.{name}"), value)?))).collect()
-    }
-}
-
-impl Field for toml::Table {
-    const SHAPE: Shape = Shape::Table(&[]);
-    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
-        value.as_table().cloned().map_or_else(|| refuse(key, path, value, Self::SHAPE), Ok)
-    }
-}
-
-/// What its reader looks at by itself.
-impl Field for Value {
-    const SHAPE: Shape = Shape::Other("a valid value");
-    fn take(_: &Key, _: &str, value: &Value) -> Result<Self> {
-        Ok(value.clone())
     }
 }
 
@@ -174,12 +163,11 @@ impl<T: Field> Field for Vec<T> {
     }
 }
 
-/// A named choice.
 impl<T: Named> Field for T {
     const SHAPE: Shape = Shape::Choice(T::lines);
     fn take(_: &Key, path: &str, value: &Value) -> Result<Self> {
         let lines = T::lines();
-        let list = use_one_of(&lines);
+        let list = meant(None, lines.iter().map(|line| line.name));
         let Some(text) = value.as_str() else { return Err(input(path, shorten(value), "is not text in quotes", list)) };
         if let Some(found) = T::find(text) {
             return Ok(found);

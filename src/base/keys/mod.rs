@@ -8,7 +8,7 @@ mod field;
 mod names;
 pub mod told;
 
-pub use field::{Field, OrNone, Plain, quantity, refuse};
+pub use field::{Field, OrNone, Plain, Unjudged, quantity, refuse};
 pub use names::{Kinds, meant, nearest};
 
 use toml::Table;
@@ -19,7 +19,7 @@ use crate::input::{
     COORDINATE, FORCE, FORCE_KN, FRACTURE_ENERGY, INTENSITY, LENGTH, MODULUS, Quantity, STRESS, number as plain, shorten,
     table_of,
 };
-use crate::kinds::{KindLine, use_one_of};
+use crate::kinds::KindLine;
 
 /// A key of a section. Everything that tells a user of it reads this.
 #[derive(Debug, Clone, Copy)]
@@ -42,24 +42,20 @@ pub struct Key {
     pub check: fn(&Key, &str, &Value) -> Result<()>,
 }
 
-/// Whether a key has to be there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Need {
     Required,
-    /// It may be left out.
     Optional,
     /// Taken where it is left out, in words: "4 W".
     Or(&'static str),
 }
 
-/// Values that a key takes.
 #[derive(Debug, Clone, Copy)]
 pub enum Shape {
     Number,
     Whole,
     Flag,
     Text,
-    /// One of these names.
     Choice(fn() -> Vec<KindLine>),
     Numbers(usize),
     /// What its reader takes, in words: "a number or \"pure\"".
@@ -70,7 +66,6 @@ pub enum Shape {
 
 /// A struct in SI units with the keys that it is read from.
 pub trait Section: Sized {
-    /// Its keys, in the order of its fields.
     const KEYS: &'static [Key];
     /// Reads it; every key alone has been looked at.
     /// Errors: a key that is missing.
@@ -99,11 +94,10 @@ impl Key {
     }
 
     /// A name of a choice, which may be left out.
-    pub fn of_choice<T: Field>(name: &'static str, text: &'static str) -> Key {
+    pub const fn of_choice<T: Field>(name: &'static str, text: &'static str) -> Key {
         Key { shape: T::SHAPE, need: Need::Optional, check: T::check, ..Key::new(name, text) }
     }
 
-    /// With unit and range.
     pub const fn of(self, quantity: Quantity) -> Key {
         Key { quantity: Some(quantity), ..self }
     }
@@ -131,7 +125,7 @@ impl Key {
         match (self.quantity, self.shape) {
             _ if !self.remedy.is_empty() => self.remedy.to_owned(),
             (Some(quantity), Shape::Number) => quantity.remedy(),
-            (_, Shape::Choice(lines)) => use_one_of(&lines()),
+            (_, Shape::Choice(lines)) => meant(None, lines().iter().map(|line| line.name)),
             (_, shape) => format!("give {}", shape.words()),
         }
     }
@@ -144,30 +138,15 @@ pub const fn key(name: &'static str, text: &'static str) -> Key {
 pub const fn part() -> Key {
     Key::new("", "")
 }
-pub const fn length(name: &'static str, text: &'static str) -> Key {
-    Key::new(name, text).of(LENGTH)
+
+macro_rules! quantities {
+    ($($name:ident of $QUANTITY:ident),+) => { $(
+        pub const fn $name(name: &'static str, text: &'static str) -> Key { Key::new(name, text).of($QUANTITY) }
+    )+ };
 }
-pub const fn coordinate(name: &'static str, text: &'static str) -> Key {
-    Key::new(name, text).of(COORDINATE)
-}
-pub const fn stress(name: &'static str, text: &'static str) -> Key {
-    Key::new(name, text).of(STRESS)
-}
-pub const fn modulus(name: &'static str, text: &'static str) -> Key {
-    Key::new(name, text).of(MODULUS)
-}
-pub const fn force(name: &'static str, text: &'static str) -> Key {
-    Key::new(name, text).of(FORCE)
-}
-pub const fn force_kn(name: &'static str, text: &'static str) -> Key {
-    Key::new(name, text).of(FORCE_KN)
-}
-pub const fn intensity(name: &'static str, text: &'static str) -> Key {
-    Key::new(name, text).of(INTENSITY)
-}
-pub const fn energy(name: &'static str, text: &'static str) -> Key {
-    Key::new(name, text).of(FRACTURE_ENERGY)
-}
+quantities!(length of LENGTH, coordinate of COORDINATE, stress of STRESS, modulus of MODULUS, force of FORCE);
+quantities!(force_kn of FORCE_KN, intensity of INTENSITY, energy of FRACTURE_ENERGY);
+
 /// A number without unit; `what` has its article: "a ratio".
 pub const fn number(name: &'static str, text: &'static str, what: &'static str, low: f64, high: f64) -> Key {
     Key::new(name, text).of(plain(what, low, high))
@@ -199,7 +178,6 @@ impl<'a> Given<'a> {
         Ok(Given { table: table_of(value, path)?, path })
     }
 
-    /// Where a key stands.
     pub fn path_of(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
@@ -216,12 +194,10 @@ impl<'a> Given<'a> {
         }
     }
 
-    /// The first of these keys that is given.
     pub fn first<'n>(&self, names: &[&'n str]) -> Option<&'n str> {
         names.iter().copied().find(|name| self.table.contains_key(*name))
     }
 
-    /// Refuses the first of these keys that is given.
     pub fn refuse_any(&self, names: &[&str], problem: &str, remedy: &str) -> Result<()> {
         self.first(names).map_or(Ok(()), |name| Err(self.refuse(name, problem, remedy)))
     }
@@ -292,10 +268,10 @@ pub fn all(keys: &[Key]) -> Vec<Key> {
     keys.iter().flat_map(own).collect()
 }
 
-/// Declares a section: a struct in SI units with its keys.
+/// Declares sections: structs in SI units with their keys.
 #[macro_export]
 macro_rules! keys {
-    ($(#[$outer:meta])* $vis:vis struct $S:ident { $( $(#[$inner:meta])* $f:ident : $T:ty = $key:expr $(, or $words:literal $default:expr)? ; )* }) => {
+    ($( $(#[$outer:meta])* $vis:vis struct $S:ident { $( $(#[$inner:meta])* $f:ident : $T:ty = $key:expr $(, or $words:literal $default:expr)? ; )* } )+) => { $(
         $(#[$outer])*
         $vis struct $S { $( $(#[$inner])* pub $f: $T, )* }
 
@@ -319,7 +295,7 @@ macro_rules! keys {
             fn take(_: &$crate::keys::Key, path: &str, value: &$crate::keys::Value) -> $crate::Result<Self> { $crate::keys::section(value, path) }
             fn part(given: &$crate::keys::Given<'_>) -> Option<$crate::Result<Self>> { Some($crate::keys::Section::read(given)) }
         }
-    };
+    )+ };
     (@need $T:ty) => { <$T as $crate::keys::Field>::NEED };
     (@need $T:ty, $words:literal) => { $crate::keys::Need::Or($words) };
     (@read $given:ident, $keys:ident, $T:ty) => {

@@ -11,7 +11,6 @@ use crate::units::us::{System, UNITS, renamed};
 pub struct Kinds<'a> {
     /// Key that tells the kind.
     pub tag: &'a str,
-    /// The kind of the file.
     pub own: &'a str,
     pub all: &'a [(&'static str, &'static [Key])],
 }
@@ -54,7 +53,6 @@ pub(super) fn stranger(
     (told("unknown key".into(), meant(near.as_deref(), names())), near)
 }
 
-/// A name without its unit, if it has one.
 fn stem(name: &str) -> Option<&str> {
     UNITS.iter().find_map(|unit| name.strip_suffix(unit.suffix(System::Si))?.strip_suffix('_'))
 }
@@ -68,29 +66,11 @@ pub fn meant<'n>(near: Option<&str>, known: impl Iterator<Item = &'n str>) -> St
     )
 }
 
-/// The name that was meant, if one is near: a quarter of its letters may be wrong, three at most; names of one or two letters are too short.
+/// The name that was meant, if one is near: a quarter of its letters may be wrong (put in, left out, changed, or swapped with the next one), three at
+/// most; names of one or two letters are too short.
 pub fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<String> {
     let most = (name.chars().count() / 4).clamp(1, 3);
     let long = known.filter(|_| name.chars().count() > 2);
-    let far = long.map(|other| (distance(name, other), other)).filter(|(far, _)| *far <= most);
+    let far = long.map(|other| (strsim::osa_distance(name, other), other)).filter(|(far, _)| *far <= most);
     far.min_by_key(|(far, _)| *far).map(|(_, other)| other.to_owned())
-}
-
-/// Letters to be put in, left out, changed, or swapped with the next one.
-fn distance(a: &str, b: &str) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
-    let mut rows = vec![(0..=b.len()).collect::<Vec<_>>()];
-    for i in 1..=a.len() {
-        let mut row = vec![i];
-        for j in 1..=b.len() {
-            let change = rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            let mut least = change.min(rows[i - 1][j] + 1).min(row[j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                least = least.min(rows[i - 2][j - 2] + 1);
-            }
-            row.push(least);
-        }
-        rows.push(row);
-    }
-    rows[a.len()][b.len()]
 }

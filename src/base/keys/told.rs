@@ -94,20 +94,16 @@ impl Told {
         self.rows().into_iter().flat_map(of).collect()
     }
 
-    /// A table of the guide.
     pub fn manual(&self) -> String {
         let row = |(path, key): (String, Key)| {
             let twin = key.twin().map(|(twin, ..)| format!(", `{twin}`")).unwrap_or_default();
             format!("| `{path}`{twin} | {} | {} | {} |\n", key.text, key.range().replace('|', "\\|"), key.left_out())
         };
         let rows: String = self.rows().into_iter().map(row).collect();
-        format!(
-            "### `[{}]`\n\n{}\n\n| key | meaning | values | default |\n|---|---|---|---|\n{rows}\n",
-            self.section, self.meaning
-        )
+        let head = "| key | meaning | values | default |\n|---|---|---|---|";
+        format!("### `[{}]`\n\n{}\n\n{head}\n{rows}\n", self.section, self.meaning)
     }
 
-    /// a class of the Python package.
     pub fn stub(&self) -> String {
         class(&class_name("", &self.section), &self.keys, self.tag)
     }
@@ -124,7 +120,6 @@ impl Told {
     }
 }
 
-/// The JSON Schema of a file of these sections.
 pub fn schema(title: &str, sections: &[Told]) -> Json {
     let (mut properties, mut required) = (Map::new(), Vec::new());
     for told in sections {

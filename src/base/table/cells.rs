@@ -4,21 +4,13 @@ use std::path::{Path, PathBuf};
 
 use csv::StringRecord;
 
-use crate::error::{Error, InputError, Result};
+use crate::error::{Error, InputError, Result, fail_if};
 
-/// Longest cell or row repeated in a message.
 const SHOWN: usize = 40;
-
-/// Most columns of a table of readings.
 pub const COLUMNS_MAX: usize = 4096;
-
-/// Lines that a note of rows left out names.
 const LINES_SHOWN: usize = 10;
-
-/// Rows that a message about a table of unknown shape shows.
 const ROWS_SHOWN: usize = 5;
 
-/// What stands between columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Separator {
     Tab,
@@ -27,7 +19,6 @@ pub enum Separator {
     Bar,
     /// Two blanks or more, so that names may have blanks.
     Gap,
-    /// Any number of blanks.
     Blanks,
 }
 
@@ -59,7 +50,6 @@ impl Separator {
     }
 }
 
-/// Cells of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     pub file: PathBuf,
@@ -68,7 +58,6 @@ pub struct Table {
     /// Column names with the units of a row of units below the header.
     pub names: Vec<String>,
     pub header_line: usize,
-    /// Rows below the header.
     pub rows: Vec<Row>,
     /// First and last line of text behind the readings, which holds none.
     pub footer: Option<[usize; 2]>,
@@ -76,15 +65,12 @@ pub struct Table {
     pub separator: Option<Separator>,
     /// Lines above the header, and comments there.
     pub preamble: Vec<(usize, String)>,
-    /// What else the user should know.
     pub notes: Vec<String>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// Line in the file, counted from 1.
     pub line: usize,
-    /// As many cells as the header has.
     pub cells: StringRecord,
 }
 
@@ -99,7 +85,6 @@ impl Row {
     }
 }
 
-/// What is wrong with a place of a file.
 pub struct Fault<'a> {
     pub file: &'a Path,
     pub line: Option<usize>,
@@ -109,7 +94,6 @@ pub struct Fault<'a> {
 }
 
 impl Fault<'_> {
-    /// The input error that says so.
     pub fn error(&self, problem: impl Into<String>, remedy: impl Into<String>) -> Error {
         Error::Input(Box::new(InputError {
             file: Some(self.file.to_path_buf()),
@@ -141,9 +125,7 @@ impl Table {
         if out == 0 {
             return Ok(());
         }
-        if out == all {
-            return Err(whole_file(&self.file).error(format!("has no usable row: each is {why}"), remedy));
-        }
+        fail_if!(out == all, whole_file(&self.file).error(format!("has no usable row: each is {why}"), remedy));
         let shown: Vec<String> = lines.iter().take(LINES_SHOWN).map(usize::to_string).collect();
         let more = if out > LINES_SHOWN { ", ..." } else { "" };
         let lines = format!("line{} {}{more}", if out == 1 { "" } else { "s" }, shown.join(", "));
@@ -152,7 +134,6 @@ impl Table {
         Ok(())
     }
 
-    /// A complaint about a name in the header.
     pub fn header_fault(&self, column: usize) -> Fault<'_> {
         let name = self.header[column].as_str();
         Fault {
@@ -163,7 +144,6 @@ impl Table {
         }
     }
 
-    /// A complaint about a cell.
     pub fn cell_fault<'a>(&'a self, row: &'a Row, column: usize) -> Fault<'a> {
         let cell = row.cell(column);
         let value = if cell.is_empty() { "\"\"" } else { cell };
@@ -190,12 +170,10 @@ impl Table {
     }
 }
 
-/// A complaint about the file as a whole.
 pub fn whole_file(file: &Path) -> Fault<'_> {
     Fault { file, line: None, key: None, value: None }
 }
 
-/// A cell as a message repeats it: not longer than one can read.
 fn shown(text: &str) -> String {
     if text.chars().count() <= SHOWN {
         return text.to_owned();

@@ -13,20 +13,15 @@ use super::lines::Line;
 use super::names::{is_unit_or_blank, with_unit};
 use super::numerals::is_number;
 use crate::cells::{ROWS_MAX, SMALLER, TEXT_MAX, restored, too_many};
-use crate::error::Result;
+use crate::error::{Result, fail_if};
 
-/// Lines that separators are compared on.
 const SAMPLE: usize = 400;
-
-/// Lines among which the header is looked for.
 const PREAMBLE_MAX: usize = 200;
 
-/// Where the table stands among the rows of a cut.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TableBounds {
     /// The header; `None` where the table has none.
     header: Option<usize>,
-    /// First row of readings.
     body: usize,
     columns: usize,
     /// Whether the header names what a test has.
@@ -43,9 +38,7 @@ pub(super) fn text(text: &str, file: &Path, words: &dyn Vocabulary) -> Result<Ta
     check_size(text, file)?;
     let is_comment = |line: &str| ["#", "%", "//"].iter().any(|sign| line.trim_start().starts_with(sign));
     let (lines, comments): (Vec<Line<'_>>, Vec<Line<'_>>) = written_lines(text).partition(|(_, line)| !is_comment(line));
-    if lines.is_empty() {
-        return Err(whole_file(file).error("is empty", words.remedy()));
-    }
+    fail_if!(lines.is_empty(), whole_file(file).error("is empty", words.remedy()));
     let sample = &lines[..lines.len().min(SAMPLE)];
     let mut candidates: Vec<(Merit, Separator)> = Vec::new();
     for separator in Separator::ALL {
@@ -132,7 +125,6 @@ fn without_footer(rows: &[Row]) -> usize {
     rows.iter().rposition(has_number).map_or(rows.len(), |last| last + 1)
 }
 
-/// A row below the header of nothing but units.
 fn is_row_of_units(row: &Row) -> bool {
     // `1000, 1` is a reading.
     let is_text = |cell: &str| !cell.is_empty() && !is_number(cell);
@@ -171,18 +163,15 @@ fn whole(separator: Separator, lines: &[Line<'_>], comments: &[Line<'_>], file: 
             check_width(row, columns, lines, separator, file)?;
         }
     }
-    if table.rows.is_empty() {
-        return Err(whole_file(file).error("has a header but no rows", words.remedy()));
-    }
+    fail_if!(table.rows.is_empty(), whole_file(file).error("has a header but no rows", words.remedy()));
     Ok(table)
 }
 
 /// Header and readings of rows that may have a preamble.
 /// Errors: less than two columns.
 pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, words: &dyn Vocabulary) -> Result<Table> {
-    let Some(place) = place(&rows, words) else {
-        return Err(whole_file(file).error("is not a table of 2 to 4096 columns", words.remedy()));
-    };
+    let place =
+        place(&rows, words).ok_or_else(|| whole_file(file).error("is not a table of 2 to 4096 columns", words.remedy()))?;
     let cells = |row: &Row| (0..place.columns).map(|column| row.cell(column).to_owned()).collect::<Vec<String>>();
     let header = match place.header {
         Some(header) => cells(&rows[header]),
@@ -241,12 +230,9 @@ fn check_width(row: &Row, columns: usize, lines: &[Line<'_>], separator: Separat
     let fault = Fault { file, line: Some(row.line), key: None, value: Some(text) };
     let other = Separator::ALL.iter().filter(|other| **other != separator).filter_map(|other| other.character());
     let mixes = other.into_iter().any(|character| character != ',' && text.contains(character));
-    let problem = format!(
-        "has {} {} where the header has {columns}, cut at {}",
-        row.cells.len(),
-        if row.cells.len() == 1 { "column" } else { "columns" },
-        separator.name()
-    );
+    let (count, at) = (row.cells.len(), separator.name());
+    let unit = if count == 1 { "column" } else { "columns" };
+    let problem = format!("has {count} {unit} where the header has {columns}, cut at {at}");
     Err(if mixes {
         fault.error(format!("{problem}, and mixes separators"), "separate every row as the header is separated")
     } else if separator == Separator::Comma && row.cells.len() > columns {

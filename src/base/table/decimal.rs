@@ -6,9 +6,8 @@
 
 use super::cells::{Row, Separator, Table};
 use super::numerals::{Decimal, Evidence, evidence, number};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, fail_if};
 
-/// A column of numbers that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Numbers {
     /// Its place in the header.
@@ -40,9 +39,7 @@ pub fn decide(table: &Table, columns: &[Numbers], given: Option<Decimal>) -> Res
         // Whole thousands beside decimals of the same sign, and thousands where none can be: one of two programs wrote the column.
         let own_sign = column.counts && seen.open[decided as usize].is_some() && seen.proofs[decided as usize].is_none();
         let other_sign = !column.counts && seen.open[decided.other() as usize].is_some();
-        if own_sign || other_sign {
-            return Err(open(seen).unwrap_or_else(|| table.header_fault(seen.column).error("is ambiguous", "")));
-        }
+        fail_if!(own_sign || other_sign, open(seen).unwrap_or_else(|| table.header_fault(seen.column).error("is ambiguous", "")));
     }
     Ok(decided)
 }
@@ -70,7 +67,6 @@ fn by_the_rest(table: &Table, columns: &[Numbers], seen: &[Seen<'_>]) -> Option<
     }
 }
 
-/// Cells of a column that tell something.
 struct Seen<'t> {
     column: usize,
     all_numbers: bool,
@@ -109,11 +105,7 @@ fn open_column(table: &Table, row: &Row, column: usize) -> Error {
 }
 
 fn contradiction(table: &Table, point: (&Row, usize), comma: (&Row, usize)) -> Error {
-    let problem = format!(
-        "has a decimal comma, but {} = {} on line {} a decimal point",
-        table.header[point.1],
-        point.0.cell(point.1),
-        point.0.line
-    );
+    let (name, cell, line) = (&table.header[point.1], point.0.cell(point.1), point.0.line);
+    let problem = format!("has a decimal comma, but {name} = {cell} on line {line} a decimal point");
     table.cell_fault(comma.0, comma.1).error(problem, "use one decimal sign in the whole file")
 }

@@ -44,7 +44,6 @@ pub(super) fn of_sheet(bytes: &[u8], sheet: &str) -> Hidden {
     hidden
 }
 
-/// Where the text of a sheet stands in the archive.
 fn path_of(archive: &mut Archive<'_>, sheet: &str) -> Option<String> {
     let (mut id, mut target) = (None, None);
     each_element(archive, "xl/workbook.xml", |element| {
@@ -62,7 +61,6 @@ fn path_of(archive: &mut Archive<'_>, sheet: &str) -> Option<String> {
     Some(target.strip_prefix('/').map_or_else(|| format!("xl/{target}"), str::to_owned))
 }
 
-/// An attribute by its name without the name space.
 fn attribute(element: &BytesStart<'_>, name: &str) -> Option<String> {
     let found = element.attributes().flatten().find(|one| one.key.local_name().as_ref() == name)?;
     found.normalized_value(XmlVersion::Implicit1_0).ok().map(std::borrow::Cow::into_owned)

@@ -48,7 +48,6 @@ fn unmarked_utf16(bytes: &[u8]) -> Option<&'static Encoding> {
     }
 }
 
-/// A line of the file with its number.
 pub(super) type Line<'a> = (usize, &'a str);
 
 impl Separator {
@@ -69,7 +68,6 @@ impl Separator {
         }
     }
 
-    /// Cells of a line, at the most.
     fn cells(self, text: &str) -> usize {
         match self.character() {
             Some(character) => text.matches(character).count() + 1,

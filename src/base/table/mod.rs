@@ -37,7 +37,6 @@ pub trait Vocabulary {
     }
     /// The sheet of a workbook that is asked for.
     fn sheet(&self) -> Option<&Sheet>;
-    /// Fewest columns of such a table.
     fn columns(&self) -> usize {
         2
     }
@@ -71,7 +70,6 @@ impl Field for Sheet {
     }
 }
 
-/// Text, or the number that a name may be.
 pub fn text_or_number(value: &Value) -> Option<String> {
     let number = || value.as_integer().and_then(|number| u32::try_from(number).ok()).map(|number| number.to_string());
     value.as_str().map(str::to_owned).or_else(number)

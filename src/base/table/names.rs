@@ -19,13 +19,11 @@ const NAME_MAX: usize = 200;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// Readings of crack length.
     Readings,
     /// Rates over ΔK: the forms of readings, K_max and K_min.
     Rates,
     /// Cycles or turning points of a spectrum.
     Spectrum,
-    /// Residual stress over the plate.
     ResidualStress,
     /// β over crack length: the forms of readings, and β.
     Beta,
@@ -39,7 +37,7 @@ impl Kind {
     }
 }
 
-/// What a column holds.
+/// What a column holds; loads are those of a cycle, K those of tables of rates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
@@ -49,53 +47,36 @@ pub enum Role {
     Length,
     /// Crack length by an instrument.
     Method,
-    /// Length of one crack on one side of the specimen.
     Side,
-    /// Largest load of a cycle.
     Max,
-    /// Smallest load of a cycle.
     Min,
-    /// Largest less smallest load of a cycle.
     Range,
-    /// Half of the range.
     Amplitude,
-    /// Mean load of a cycle.
     Mean,
     /// Smallest over largest load.
     Ratio,
     /// Loads in their order.
     Value,
-    /// Range of the stress intensity.
     DeltaK,
-    /// Stress intensity at maximum load, in tables of rates.
     KMax,
-    /// Stress intensity at minimum load, in tables of rates.
     KMin,
     /// da/dN.
     Rate,
     Width,
     Thickness,
     Counts,
-    /// Whether the reading does not count.
     CountsNot,
     /// Of several specimens or of a model.
     Statistic,
-    /// Place in the plate.
     X,
-    /// See [`Role::X`].
     Y,
-    /// Stress component σ_y.
     StressY,
-    /// Stress component σ_x.
     StressX,
-    /// Stress component τ_xy.
     ShearXy,
     Beta,
-    /// Another quantity of a test.
     Other,
     /// Speaks of cycles, crack length or load, and is not a form of them.
     Unclear,
-    /// None that the vocabulary has.
     Unknown,
 }
 
@@ -132,10 +113,7 @@ const CYCLES: Unit = Unit::Cycles(CycleUnit::Cycles);
 const LOAD: Unit = Unit::Load(LoadUnit::Newton);
 const INTENSITY: Unit = Unit::Intensity(IntensityUnit::MpaSqrtM);
 const RATE: Unit = Unit::Rate(RateUnit::Millimetre);
-
-/// Forms of a kind of table, by role.
 type Forms = BTreeMap<Role, BTreeMap<Measure, String>>;
-
 /// Forms and words of a kind of table, with what they mean.
 type Part = HashMap<String, Vec<(Role, Measure)>>;
 
@@ -157,7 +135,6 @@ static PARTS: LazyLock<HashMap<Kind, Part>> = LazyLock::new(|| {
     kinds.iter().map(|(kind, forms)| (*kind, of(forms))).collect()
 });
 
-/// The unit that a name says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Named {
     No,

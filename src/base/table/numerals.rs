@@ -1,7 +1,6 @@
 //! Numbers as they are written: digits, a decimal sign, signs between thousands, an exponent.
 
 crate::kinds! {
-    /// Decimal signs.
     pub enum Decimal for "measured.decimal" {
         Point = ".": "1234.5",
         Comma = ",": "1234,5",
@@ -16,7 +15,6 @@ impl Decimal {
         }
     }
 
-    /// Its name in messages.
     pub fn words(self) -> &'static str {
         match self {
             Decimal::Point => "point",
@@ -33,11 +31,9 @@ impl Decimal {
     }
 }
 
-/// What a cell tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Evidence {
     NoNumber,
-    /// No sign that could be a decimal one.
     Whole,
     Proves(Decimal),
     /// Three digits behind the only sign, which may separate thousands.

@@ -6,7 +6,7 @@ use super::names::{Column, Kind, Named, Role};
 use super::numerals::{is_number, number};
 use super::units::Unit;
 use super::{Decimal, Sheet, Vocabulary};
-use crate::error::Result;
+use crate::error::{Result, fail_if};
 
 /// What is asked of such a table.
 #[derive(Clone, Copy)]
@@ -61,9 +61,7 @@ impl Words {
             let problem = "begins a table whose columns have no names";
             return Err(of_row(row.line, row.cell(0)).error(problem, self.remedy));
         }
-        if let Some(strange) = known.iter().position(Option::is_none) {
-            return Err(fault(strange, "unknown column"));
-        }
+        fail_if!(let Some(strange) = known.iter().position(Option::is_none), fault(strange, "unknown column"));
         if !(self.is_enough)(&roles) {
             let names = table.header.join(",");
             let fault = Fault { key: Some("header"), ..of_row(table.header_line, &names) };

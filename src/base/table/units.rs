@@ -6,81 +6,60 @@ use std::sync::LazyLock;
 use super::words::{COLUMNS, words};
 use crate::units::{INCH, KGF, KN, KSI, LBF, MM, MPA, MPA_SQRT_M, SQRT_INCH};
 
-crate::kinds! {
-    /// Units of crack length in measured files.
-    pub enum LengthUnit for "measured.length_unit" {
-        Millimetre = "mm": "millimetres",
-        Inch = "inch": "inches of 25.4 mm",
-        Metre = "m": "metres",
-    }
+/// Declares the units of every quantity: names in input files with their size in SI, or in cycles, and their meaning.
+macro_rules! units {
+    ($($(#[$doc:meta])* $Quantity:ident($Kind:ident) for $key:literal { $($Unit:ident = $name:literal, $si:expr, $meaning:literal;)+ })+) => {
+        crate::kinds! { $( pub enum $Kind for $key { $($Unit = $name: $meaning),+ } )+ }
+
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Unit { $($(#[$doc])* $Quantity($Kind)),+ }
+
+        const UNITS: &[(Unit, f64)] = &[$($((Unit::$Quantity($Kind::$Unit), $si)),+),+];
+
+        impl Unit {
+            pub fn name(self) -> &'static str { match self { $(Unit::$Quantity(unit) => unit.name()),+ } }
+        }
+    };
 }
 
-crate::kinds! {
-    /// Units of cycles in measured files.
-    pub enum CycleUnit for "measured.cycle_unit" {
-        Cycles = "cycles": "single cycles",
-        Kilocycles = "kilocycles": "thousands of cycles",
-        Megacycles = "megacycles": "millions of cycles",
+units! {
+    Length(LengthUnit) for "measured.length_unit" {
+        Millimetre = "mm", MM, "millimetres";
+        Inch = "inch", INCH, "inches of 25.4 mm";
+        Metre = "m", 1.0, "metres";
     }
-}
-
-crate::kinds! {
-    /// Units of loads in measured files.
-    pub enum LoadUnit for "measured.load_unit" {
-        Newton = "N": "newtons",
-        Kilonewton = "kN": "kilonewtons",
-        PoundForce = "lbf": "pounds-force of 4.448 N",
-        Kip = "kip": "thousands of pounds-force",
-        KilogramForce = "kgf": "kilograms-force of 9.807 N",
-        Megapascal = "MPa": "gross stress in megapascals",
-        Ksi = "ksi": "gross stress in thousands of pounds-force per square inch",
+    Cycles(CycleUnit) for "measured.cycle_unit" {
+        Cycles = "cycles", 1.0, "single cycles";
+        Kilocycles = "kilocycles", 1e3, "thousands of cycles";
+        Megacycles = "megacycles", 1e6, "millions of cycles";
     }
-}
-
-crate::kinds! {
-    /// Units of stress intensity in tables of rates.
-    pub enum IntensityUnit for "measured.intensity_unit" {
-        MpaSqrtM = "MPa sqrt(m)": "MPa√m",
-        KsiSqrtInch = "ksi sqrt(in)": "ksi√in, 1.0988 MPa√m",
-        NewtonMm = "N/mm^1.5": "N/mm^(3/2), 0.03162 MPa√m",
-        KilogramForceMm = "kgf/mm^1.5": "kgf/mm^(3/2), 0.3101 MPa√m",
-    }
-}
-
-crate::kinds! {
-    /// Units of da/dN in tables of rates.
-    pub enum RateUnit for "measured.rate_unit" {
-        Millimetre = "mm/cycle": "millimeters per cycle",
-        Metre = "m/cycle": "meters per cycle",
-        Inch = "in/cycle": "inches per cycle",
-        Micrometre = "um/cycle": "micrometers per cycle",
-        Nanometre = "nm/cycle": "nanometers per cycle",
-    }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unit {
-    Length(LengthUnit),
-    Cycles(CycleUnit),
     /// Of a force or a gross stress.
-    Load(LoadUnit),
-    Intensity(IntensityUnit),
+    Load(LoadUnit) for "measured.load_unit" {
+        Newton = "N", 1.0, "newtons";
+        Kilonewton = "kN", KN, "kilonewtons";
+        PoundForce = "lbf", LBF, "pounds-force of 4.448 N";
+        Kip = "kip", 1e3 * LBF, "thousands of pounds-force";
+        KilogramForce = "kgf", KGF, "kilograms-force of 9.807 N";
+        Megapascal = "MPa", MPA, "gross stress in megapascals";
+        Ksi = "ksi", KSI, "gross stress in thousands of pounds-force per square inch";
+    }
+    Intensity(IntensityUnit) for "measured.intensity_unit" {
+        MpaSqrtM = "MPa sqrt(m)", MPA_SQRT_M, "MPa√m";
+        KsiSqrtInch = "ksi sqrt(in)", KSI * SQRT_INCH, "ksi√in, 1.0988 MPa√m";
+        NewtonMm = "N/mm^1.5", N_PER_MM_1_5, "N/mm^(3/2), 0.03162 MPa√m";
+        KilogramForceMm = "kgf/mm^1.5", KGF * N_PER_MM_1_5, "kgf/mm^(3/2), 0.3101 MPa√m";
+    }
     /// Of da/dN.
-    Rate(RateUnit),
+    Rate(RateUnit) for "measured.rate_unit" {
+        Millimetre = "mm/cycle", MM, "millimeters per cycle";
+        Metre = "m/cycle", 1.0, "meters per cycle";
+        Inch = "in/cycle", INCH, "inches per cycle";
+        Micrometre = "um/cycle", 1e-6, "micrometers per cycle";
+        Nanometre = "nm/cycle", 1e-9, "nanometers per cycle";
+    }
 }
 
 impl Unit {
-    /// Name in input files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Unit::Length(unit) => unit.name(),
-            Unit::Cycles(unit) => unit.name(),
-            Unit::Load(unit) => unit.name(),
-            Unit::Intensity(unit) => unit.name(),
-            Unit::Rate(unit) => unit.name(),
-        }
-    }
-
     /// Metres, cycles, newtons, pascals, Pa√m or m/cycle in the unit.
     pub fn si(self) -> f64 {
         UNITS.iter().find(|(unit, _)| *unit == self).map_or(f64::NAN, |(_, si)| *si)
@@ -92,7 +71,6 @@ impl Unit {
         SPELLINGS.get(&words.join(" "))?.iter().find(is_like).copied()
     }
 
-    /// Names of the units of its quantity.
     pub fn alternatives(self) -> Vec<&'static str> {
         let is_like = |unit: &Unit| std::mem::discriminant(unit) == std::mem::discriminant(&self);
         UNITS.iter().map(|(unit, _)| *unit).filter(is_like).map(Unit::name).collect()
@@ -122,29 +100,3 @@ static SPELLINGS: LazyLock<HashMap<String, Vec<Unit>>> = LazyLock::new(|| {
     }
     spellings
 });
-
-/// Units with their size in SI, or in cycles.
-const UNITS: [(Unit, f64); 22] = [
-    (Unit::Length(LengthUnit::Millimetre), MM),
-    (Unit::Length(LengthUnit::Inch), INCH),
-    (Unit::Length(LengthUnit::Metre), 1.0),
-    (Unit::Cycles(CycleUnit::Cycles), 1.0),
-    (Unit::Cycles(CycleUnit::Kilocycles), 1e3),
-    (Unit::Cycles(CycleUnit::Megacycles), 1e6),
-    (Unit::Load(LoadUnit::Newton), 1.0),
-    (Unit::Load(LoadUnit::Kilonewton), KN),
-    (Unit::Load(LoadUnit::PoundForce), LBF),
-    (Unit::Load(LoadUnit::Kip), 1e3 * LBF),
-    (Unit::Load(LoadUnit::KilogramForce), KGF),
-    (Unit::Load(LoadUnit::Megapascal), MPA),
-    (Unit::Load(LoadUnit::Ksi), KSI),
-    (Unit::Intensity(IntensityUnit::MpaSqrtM), MPA_SQRT_M),
-    (Unit::Intensity(IntensityUnit::KsiSqrtInch), KSI * SQRT_INCH),
-    (Unit::Intensity(IntensityUnit::NewtonMm), N_PER_MM_1_5),
-    (Unit::Intensity(IntensityUnit::KilogramForceMm), KGF * N_PER_MM_1_5),
-    (Unit::Rate(RateUnit::Millimetre), MM),
-    (Unit::Rate(RateUnit::Metre), 1.0),
-    (Unit::Rate(RateUnit::Inch), INCH),
-    (Unit::Rate(RateUnit::Micrometre), 1e-6),
-    (Unit::Rate(RateUnit::Nanometre), 1e-9),
-];

@@ -11,7 +11,7 @@ use csv::StringRecord;
 use super::cells::{COLUMNS_MAX, Fault, Row, Table, whole_file};
 use super::{Sheet, Vocabulary, cut, hidden};
 use crate::cells::{CELLS_MAX, SMALLER, TEXT_MAX, UNPACKED_MAX, too_many};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, fail_if};
 use crate::units::unmistakable;
 
 /// Most sheets of a workbook: a file may name one sheet any number of times.
@@ -28,9 +28,7 @@ pub(super) fn table(bytes: &[u8], file: &Path, words: &dyn Vocabulary) -> Result
     check_size(bytes, file)?;
     let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).map_err(broken)?;
     let sheets = book.sheet_names();
-    if sheets.len() > SHEETS_MAX {
-        return Err(whole_file(file).error(too_many("sheets", sheets.len(), SHEETS_MAX), SMALLER));
-    }
+    fail_if!(sheets.len() > SHEETS_MAX, whole_file(file).error(too_many("sheets", sheets.len(), SHEETS_MAX), SMALLER));
     let mut taken = Taken::default();
     if let Some(wanted) = words.sheet() {
         let name = chosen(wanted, &sheets, file)?;
@@ -93,7 +91,6 @@ fn sheet_fault<'a>(file: &'a Path, sheet: &'a str) -> Fault<'a> {
 /// What the sheets of a workbook that were read so far take up.
 #[derive(Default)]
 struct Taken {
-    /// Cells, empty ones among them.
     cells: usize,
     /// Bytes of their text: cells share it in the file, but not here.
     text: usize,
@@ -233,10 +230,8 @@ fn check_size(bytes: &[u8], file: &Path) -> Result<()> {
             return Err(whole_file(file).error(format!("declares {} texts", claims.largest), SMALLER));
         }
         left -= unpacked;
-        if left == 0 {
-            let problem = format!("unpacks to more than {UNPACKED_MAX} bytes");
-            return Err(whole_file(file).error(problem, "give the readings alone, or CSV"));
-        }
+        let problem = || format!("unpacks to more than {UNPACKED_MAX} bytes");
+        fail_if!(left == 0, whole_file(file).error(problem(), "give the readings alone, or CSV"));
     }
     Ok(())
 }

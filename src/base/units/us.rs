@@ -23,7 +23,6 @@ impl System {
 /// A unit of both systems, the metric one first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
-    /// End of keys and columns.
     suffix: [&'static str; 2],
     /// Name in words, pictures and messages.
     pub(super) word: [&'static str; 2],
@@ -77,7 +76,6 @@ impl Unit {
     }
 }
 
-/// A key or column in the other system.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Renamed {
     pub name: String,

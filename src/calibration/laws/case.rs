@@ -5,7 +5,7 @@ use toml::{Table, Value};
 use super::{FitLaw, Given, LawFits, fit_laws};
 use crate::case::{CalibrationCase, source};
 use crate::outliers::{StepRate, step_rates};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::{Document, value_at};
 use perilife_base::keys::{Key, Section, intensity, key, section};
 use perilife_base::table::units::{IntensityUnit, RateUnit};
@@ -15,11 +15,9 @@ use perilife_laws::growth_law::{GrowthLawKind, paris};
 use perilife_measured::rates::lacks_ratio;
 use perilife_measured::{MeasuredCurve, RangeKind, RateFile, RateFileKeys, RateRow};
 
-/// A checked fit of laws.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawCase {
     pub name: String,
-    /// Rates inside the window.
     pub rows: Vec<RateRow>,
     pub law: FitLaw,
     pub given: Given,
@@ -29,13 +27,11 @@ pub struct LawCase {
     pub sources: Vec<SourceFile>,
     /// The test, where rates are taken from readings.
     pub test: Option<Box<CalibrationCase>>,
-    /// What the user should know.
     pub warnings: Vec<String>,
     /// Units that the tables were read in, one line a table.
     pub units: Vec<String>,
     /// What ΔK was in the tables at negative R, where a row has one.
     pub range: Option<RangeKind>,
-    /// The input as given.
     pub echo: serde_json::Value,
 }
 
@@ -49,8 +45,6 @@ perilife_base::keys! {
         from: Option<f64> = intensity("from_delta_k_mpa_sqrt_m", "Fit window: from this ΔK");
         to: Option<f64> = intensity("to_delta_k_mpa_sqrt_m", "Fit window: to this ΔK");
     }
-}
-perilife_base::keys! {
     /// Keys of `[fit]` that only laws have.
     pub struct LawKeys {
         law: Option<FitLaw> = key("law", "Growth law to fit: default paris");
@@ -70,7 +64,6 @@ pub fn is_law_fit(table: &Table) -> bool {
 }
 
 impl LawCase {
-    /// Reads the file and the tables it names.
     pub fn from_document(document: &Document) -> Result<Self> {
         Self::build(document).map_err(|error| document.locate(error))
     }
@@ -109,10 +102,8 @@ impl LawCase {
         } else {
             case.material = alone(&rest.table)?;
         }
-        if case.sources.is_empty() {
-            let remedy = "name tables of da/dN over ΔK: rates = [\"...csv\"], or a-N readings: files = [\"...csv\"]";
-            return Err(input_missing("measured.rates", "is missing", remedy));
-        }
+        let remedy = "name tables of da/dN over ΔK: rates = [\"...csv\"], or a-N readings: files = [\"...csv\"]";
+        fail_if!(case.sources.is_empty(), input_missing("measured.rates", "is missing", remedy));
         case.window(&rates)?;
         Ok(case)
     }
@@ -120,9 +111,7 @@ impl LawCase {
     fn add_table(&mut self, keys: &RateFileKeys, document: &Document) -> Result<()> {
         let (found, bytes) = keys.read(&document.folder, "measured.rates")?;
         let path = document.folder.path(&keys.file);
-        if !found.says_ratio {
-            return Err(lacks_ratio(&keys.file, "measured.rates").in_file(&path));
-        }
+        fail_if!(!found.says_ratio, lacks_ratio(&keys.file, "measured.rates").in_file(&path));
         self.warnings.extend(found.warnings);
         self.flagged += found.flagged;
         if let Some(range) = found.range {
@@ -152,10 +141,8 @@ impl LawCase {
 
     fn window(&mut self, keys: &RatesKeys) -> Result<()> {
         let (from, to) = (keys.from.unwrap_or(0.0), keys.to.unwrap_or(f64::INFINITY));
-        if from >= to {
-            let problem = format!("is not above from_delta_k_mpa_sqrt_m = {}", from / MPA_SQRT_M);
-            return Err(input("measured.to_delta_k_mpa_sqrt_m", to / MPA_SQRT_M, problem, "give a window with rates"));
-        }
+        let problem = || format!("is not above from_delta_k_mpa_sqrt_m = {}", from / MPA_SQRT_M);
+        fail_if!(from >= to, input("measured.to_delta_k_mpa_sqrt_m", to / MPA_SQRT_M, problem(), "give a window with rates"));
         self.rows.retain(|row| (from * (1.0 - 1e-9)..=to * (1.0 + 1e-9)).contains(&row.delta_k));
         let count = self.rows.len();
         if count < 3 {
@@ -191,7 +178,6 @@ impl LawCase {
     }
 }
 
-/// Some keys of a section, taken out of it.
 fn taken(table: &mut Table, section: &str, keys: &[&str]) -> Result<Value> {
     let mut taken = Table::new();
     if let Some(value) = table.get_mut(section) {

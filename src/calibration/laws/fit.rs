@@ -20,12 +20,10 @@ const AT_END: f64 = 1e-3;
 /// Smallest over largest eigenvalue of scaled normal equations below which constants trade against each other without end.
 const SINGULAR: f64 = 1e-13;
 
-/// A constant of a fitted law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Constant {
-    /// Its key in `[fatigue]`.
     pub key: &'static str,
-    /// Value in the unit of the key.
+    /// Value in the unit of its key in `[fatigue]`.
     pub value: f64,
     /// Standard error; `None` where it was given.
     pub error: Option<f64>,
@@ -42,7 +40,6 @@ pub struct LawFit {
     pub residuals: Vec<f64>,
     /// Akaike's information criterion for small samples; NaN where there is no fit.
     pub aicc: f64,
-    /// Why it is out of question.
     pub left_out: Option<String>,
     /// Its factor that no rate tells, and that is 1.
     pub lacks: Option<&'static str>,
@@ -59,7 +56,6 @@ impl LawFit {
         self.constants.iter().filter(|constant| constant.value.is_finite())
     }
 
-    /// Root mean square of the residuals.
     pub fn rms(&self) -> f64 {
         (self.residuals.iter().map(|residual| residual * residual).sum::<f64>() / self.residuals.len() as f64).sqrt()
     }
@@ -120,7 +116,6 @@ pub(super) fn fit(kind: GrowthLawKind, given: &Given, rows: &[RateRow]) -> LawFi
     }
 }
 
-/// Every combination of the starts of the variables.
 fn starts(free: &[Parameter]) -> Vec<Vec<f64>> {
     free.iter().fold(vec![Vec::new()], |all, parameter| {
         let [first, second] = parameter.starts;
@@ -129,7 +124,6 @@ fn starts(free: &[Parameter]) -> Vec<Vec<f64>> {
     })
 }
 
-/// A constant whose best value is an end of its range.
 fn at_end(free: &[Parameter], best: &Minimum) -> Option<String> {
     let (parameter, low) = free.iter().zip(&best.at).find_map(|(parameter, &value)| {
         let [low, high] = parameter.bounds;
@@ -211,7 +205,6 @@ pub(super) fn check_given(given: &Given) -> Result<()> {
     Ok(())
 }
 
-/// A law with some constants given, over some rows.
 #[derive(Debug, Clone)]
 struct Candidate<'a> {
     pub kind: GrowthLawKind,
@@ -246,7 +239,6 @@ impl<'a> Candidate<'a> {
         Ok(candidate)
     }
 
-    /// Constants that are searched.
     pub fn free(&self) -> impl Iterator<Item = &'static Parameter> {
         self.constants.iter().zip(&self.given).filter(|(_, given)| given.is_none()).map(|(constant, _)| constant)
     }
@@ -255,7 +247,6 @@ impl<'a> Candidate<'a> {
         self.rows.iter().map(RateRow::k_max).fold(0.0, f64::max)
     }
 
-    /// Keys and values of all constants but C.
     pub fn constants(&self, variables: &[f64]) -> Vec<(&'static str, f64)> {
         let mut variables = variables.iter();
         let raw: Vec<f64> =

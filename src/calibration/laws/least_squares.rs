@@ -5,7 +5,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Steps after which a search has failed.
 const STEPS_MAX: usize = 2000;
 /// Share by which a sum of squares has to fall for a step to count.
 const PROGRESS: f64 = 1e-13;
@@ -17,23 +16,19 @@ const ROUND_OFF: f64 = 1e-12;
 const DAMPING_MAX: f64 = 1e14;
 /// Difference of a variable by which slopes are taken.
 const DIFFERENCE: f64 = 1e-6;
-
 /// ln of the rates of a law at all rows but for their level; `None` where the law has no rate at one of them.
 pub(super) type Shape<'a> = &'a (dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync);
 
-/// Where a sum of squares is least.
 #[derive(Debug, Clone)]
 pub(super) struct Minimum {
     pub at: Vec<f64>,
     pub level: f64,
-    /// Measured less fitted.
     pub residuals: Vec<f64>,
     /// Derivatives of the shape over the variables, a column each.
     pub slopes: DMatrix<f64>,
 }
 
 impl Minimum {
-    /// Sum of the squares of the residuals.
     pub fn sum(&self) -> f64 {
         self.residuals.iter().map(|residual| residual * residual).sum()
     }
@@ -73,7 +68,6 @@ pub(super) fn minimise(shape: Shape<'_>, measured: &[f64], start: &[f64], bounds
     None
 }
 
-/// A place of the search.
 struct Point {
     at: DVector<f64>,
     level: f64,
@@ -100,7 +94,6 @@ fn clamped(mut at: DVector<f64>, bounds: &[[f64; 2]]) -> DVector<f64> {
     at
 }
 
-/// Whether a variable is free to follow the gradient.
 fn can_move(value: f64, gradient: f64, [low, high]: [f64; 2]) -> bool {
     !(value <= low && gradient < 0.0 || value >= high && gradient > 0.0)
 }
@@ -115,7 +108,6 @@ pub(super) fn without_level(slopes: &DMatrix<f64>) -> DMatrix<f64> {
     projected
 }
 
-/// Marquardt's step of the variables that can move.
 fn damped_step(normal: &DMatrix<f64>, gradient: &DVector<f64>, moves: &[bool], damping: f64) -> Option<DVector<f64>> {
     let mut matrix = normal.clone();
     let mut right = gradient.clone();

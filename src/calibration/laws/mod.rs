@@ -39,7 +39,6 @@ impl FitLaw {
         kinds().map(|kind| FitLaw(Some(kind))).chain([FitLaw(None)])
     }
 
-    /// Name in input and result files.
     pub fn name(self) -> &'static str {
         self.0.map_or("best", GrowthLawKind::name)
     }
@@ -60,7 +59,6 @@ fn kinds() -> impl Iterator<Item = GrowthLawKind> {
 const ROUND_OFF: f64 = 1e-20;
 /// Rates beyond this factor of the law, or below its inverse, are named.
 const FACTOR: f64 = 3.0;
-/// Most rows that are named.
 const NAMED: usize = 5;
 /// A law whose residuals are larger than those of another by this factor is not chosen; a law that misses smooth curves through the tests
 /// by this factor more than the rates do does not bend as they do.
@@ -72,17 +70,14 @@ const CORRELATION_MAX: f64 = 0.7;
 /// Difference of the criterion above which a law that was asked for is the wrong one.
 const WORSE: f64 = 10.0;
 
-/// All laws fitted to the same rates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawFits {
-    /// Each law, fitted or left out.
     pub candidates: Vec<LawFit>,
     pub chosen: usize,
     /// Criterion of the next best law less that of the chosen one; `None` where no other law is left.
     pub margin: Option<(GrowthLawKind, f64)>,
     /// How many independent rates the rates count as.
     pub effective_rates: f64,
-    /// What the user should know.
     pub warnings: Vec<String>,
 }
 
@@ -133,7 +128,6 @@ fn judged(kind: GrowthLawKind, given: &Given, rows: &[RateRow], effective: f64) 
     if simpler.left_out.is_none() { LawFit { lacks: Some(of), ..simpler } } else { law }
 }
 
-/// The place of the law asked for, or of the best.
 fn choose(candidates: &[LawFit], wanted: FitLaw) -> Result<usize> {
     if let Some(kind) = wanted.0 {
         let place = candidates.iter().position(|candidate| candidate.kind == kind).unwrap_or(0);
@@ -182,13 +176,11 @@ impl Smooth {
         Smooth { residuals }
     }
 
-    /// Pairs of neighbours of one test.
     fn pairs<'a>(&'a self, rows: &'a [RateRow]) -> impl Iterator<Item = [f64; 2]> + 'a {
         let same = |i: &usize| rows[*i].series == rows[*i - 1].series && self.residuals[*i].is_finite();
         (1..rows.len()).filter(same).map(|i| [self.residuals[i - 1], self.residuals[i]])
     }
 
-    /// How many independent rates they are.
     fn effective_rates(&self, rows: &[RateRow]) -> f64 {
         let all = rows.len() as f64;
         let known = || self.residuals.iter().filter(|residual| residual.is_finite());
@@ -214,13 +206,10 @@ impl Smooth {
         }
         let scatter: f64 = known.iter().map(|&row| self.residuals[row].powi(2)).sum();
         let [bend, scatter] = [bend, scatter].map(|sum| (sum / known.len() as f64).sqrt());
-        (!known.is_empty() && bend > (RMS_FACTOR * scatter).max(BEND_MIN)).then(|| {
-            format!(
-                "law {} misses the shape of the data: rms {bend:.3} in ln da/dN, {scatter:.3} for a smooth curve per test; \
-                 growth_law = \"table\" with growth_table uses the rates directly",
-                law.kind
-            )
-        })
+        let misses = format!("rms {bend:.3} in ln da/dN, {scatter:.3} for a smooth curve per test");
+        let remedy = "growth_law = \"table\" with growth_table uses the rates directly";
+        (!known.is_empty() && bend > (RMS_FACTOR * scatter).max(BEND_MIN))
+            .then(|| format!("law {} misses the shape of the data: {misses}; {remedy}", law.kind))
     }
 }
 
@@ -253,11 +242,8 @@ fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
         lines.push(format!("law {} is not the best: {kind} is better by {:.1} in AICc", law.kind, -margin));
     }
     if fits.effective_rates < 0.9 * rows.len() as f64 {
-        lines.push(format!(
-            "neighboring rates are correlated (seven-point polynomial): {} rates weigh as {:.0}",
-            rows.len(),
-            fits.effective_rates
-        ));
+        let (count, weight) = (rows.len(), fits.effective_rates);
+        lines.push(format!("neighboring rates are correlated (seven-point polynomial): {count} rates weigh as {weight:.0}"));
     }
     let far: Vec<String> = (rows.iter().zip(&law.residuals))
         .filter(|(_, residual)| residual.abs() > FACTOR.ln())

@@ -1,15 +1,14 @@
 //! What a fit says at the variances that were found: law, scatter, their errors, and every specimen in it.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{DMatrix, Vector2};
 
-use super::intervals::{Interval, IntervalRow, Specimen, rows};
-use super::noise::{Noise, cholesky, whiten};
+use super::intervals::{Interval, Specimen, rows};
+use super::noise::Noise;
 use super::reml::{departures, estimate, likelihood, variances};
 use super::{Found, Member, Population, SLOPE_SAME, SPECIMENS_FOR_SCATTER, groups, lots, penalty, slope_of_readings};
 use crate::median::huber_mean;
 use perilife_laws::curve::CurveLaw;
 
-/// Steps of the own law of a specimen.
 const OWN_STEPS: usize = 12;
 
 /// All results at the variances that were found.
@@ -61,17 +60,11 @@ fn own_law(intervals: &[Interval], lot: &CurveLaw, noise: &Noise) -> Option<[f64
     let mut law = *lot;
     for _ in 0..OWN_STEPS {
         let rows = rows(&law, intervals);
-        let mut factor = noise.covariance(&rows);
-        cholesky(&mut factor, n)?;
-        let line = |(row, own): (&IntervalRow, &Interval)| [row.design[0], row.design[1], row.log_cycles - own.cycles.ln()];
-        let mut white: Vec<f64> = rows.iter().zip(intervals).flat_map(line).collect();
-        whiten(&factor, n, &mut white, 3);
-        let (mut curvature, mut right) = (Matrix2::zeros(), Vector2::zeros());
-        for row in white.chunks_exact(3) {
-            let x = Vector2::new(row[0], row[1]);
-            curvature += x * x.transpose();
-            right += x * row[2];
-        }
+        let residual = |i: usize| rows[i].log_cycles - intervals[i].cycles.ln();
+        let mut white = DMatrix::from_fn(n, 3, |i, k| if k < 2 { rows[i].design[k] } else { residual(i) });
+        noise.covariance(&rows).cholesky()?.l_dirty().solve_lower_triangular_mut(&mut white);
+        let products = white.tr_mul(&white);
+        let (curvature, right) = (products.fixed_view::<2, 2>(0, 0).into_owned(), products.fixed_view::<2, 1>(0, 2).into_owned());
         let level_only = Vector2::new(right[0] / curvature[(0, 0)], 0.0);
         let change = if n < 2 { level_only } else { curvature.try_inverse().map_or(level_only, |inverse| inverse * right) };
         law.level += change[0];

@@ -4,13 +4,13 @@
 //! correlated lognormals, taken as lognormal itself with their mean and variance: `u_j = n_j e^(S_jj/2)`, `M = Σ u_j`,
 //! `s² = ln(1 + uᵀ(e^S - 1)u / M²)`, median `M e^(-s²/2)`, quantiles `median · exp(t_ν s)`.
 
+use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::Population;
 use super::intervals::{Interval, IntervalRow, Specimen, rows};
 use super::lots::BETWEEN_LOTS;
-use super::noise::{cholesky, whiten};
 use super::student::{noncentral_t_quantile, t_quantile};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::units::MPA_SQRT_M;
@@ -24,7 +24,6 @@ const SLOPE_DEVIATION_MIN: f64 = 0.5;
 /// Factor of ΔK beyond the calibrated range up to which the chord is continued.
 pub(super) const BEYOND_MAX: f64 = 2.0;
 const BASIS_CONFIDENCE: f64 = 0.95;
-/// Fewest specimens of a basis value.
 const BASIS_SPECIMENS_MIN: usize = 3;
 
 /// Lower bound of lives with a confidence of 95 %.
@@ -37,10 +36,9 @@ pub enum Basis {
 /// ln cycles of the cells of a path and their covariance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
-    /// Median cycles of every cell.
     cycles: Vec<f64>,
-    /// Covariance of their logarithms, by rows.
-    covariance: Vec<f64>,
+    /// Covariance of their logarithms.
+    covariance: DMatrix<f64>,
     /// ν of Student's t.
     freedom: f64,
     specimens: usize,
@@ -89,28 +87,20 @@ impl Population {
 
         // cov(future) - C_fo C_oo⁻¹ C_of and the mean with it, by the factor of the observed part.
         let cells = n - observed;
-        let mut factor: Vec<f64> = (0..observed).flat_map(|i| covariance[i * n..i * n + observed].to_vec()).collect();
+        let factor = covariance.view((0, 0), (observed, observed)).into_owned().cholesky();
         let not_definite = || Error::Mechanics("the covariance of the readings is not positive definite".to_owned());
-        cholesky(&mut factor, observed).ok_or_else(not_definite)?;
-        let columns = cells + 1;
-        let right = |i: usize| {
-            let residual = all[i].log_cycles - own[i].cycles.ln();
-            covariance[i * n + observed..(i + 1) * n].iter().copied().chain([residual])
-        };
-        let mut white: Vec<f64> = (0..observed).flat_map(right).collect();
-        whiten(&factor, observed, &mut white, columns);
-        let known = |j: usize, l: usize| (0..observed).map(|i| white[i * columns + j] * white[i * columns + l]).sum::<f64>();
-        let mut conditional = vec![0.0; cells * cells];
-        for j in 0..cells {
-            for l in 0..cells {
-                conditional[j * cells + l] = covariance[(observed + j) * n + observed + l] - known(j, l);
-            }
-        }
+        let factor = factor.ok_or_else(not_definite)?.unpack();
+        let mut white = covariance.view((0, observed), (observed, cells)).into_owned();
+        let mut residuals = DVector::from_fn(observed, |i, _| all[i].log_cycles - own[i].cycles.ln());
+        factor.solve_lower_triangular_mut(&mut white);
+        factor.solve_lower_triangular_mut(&mut residuals);
+        let conditional = covariance.view((observed, observed), (cells, cells)) - white.tr_mul(&white);
+        let known = white.tr_mul(&residuals);
         let cycles: Vec<f64> = (0..cells)
             .map(|j| {
                 let row = &all[observed + j];
                 // On the mean over the noise a specimen takes the cycles of the law of lives.
-                (row.log_cycles - self.level_of_lives - 0.5 * self.noise.variance(row) - known(j, cells)).exp()
+                (row.log_cycles - self.level_of_lives - 0.5 * self.noise.variance(row) - known[j]).exp()
             })
             .collect();
         let outside: f64 = cycles.iter().zip(&of_path).map(|(n, row)| n * row.outside).sum();
@@ -129,8 +119,8 @@ impl Population {
         self.law.slope_deviation().max(SLOPE_DEVIATION_MIN)
     }
 
-    /// `Z T Zᵀ + X V Xᵀ + cov(e)`, whole, by rows.
-    fn of_rows(&self, rows: &[IntervalRow], lot: Lot) -> Vec<f64> {
+    /// `Z T Zᵀ + X V Xᵀ + cov(e)`, whole.
+    fn of_rows(&self, rows: &[IntervalRow], lot: Lot) -> DMatrix<f64> {
         let n = rows.len();
         let mut whole = self.noise.covariance(rows);
         let t = self.between.matrix();
@@ -146,8 +136,8 @@ impl Population {
             for l in 0..=j {
                 let shared: f64 = left.iter().zip(&rows[l].design).map(|(a, b)| a * b).sum();
                 let (near, far) = (rows[j].beyond, rows[l].beyond);
-                let value = whole[j * n + l] + shared + outside * (near[0] * far[0] + near[1] * far[1]);
-                (whole[j * n + l], whole[l * n + j]) = (value, value);
+                let value = whole[(j, l)] + shared + outside * (near[0] * far[0] + near[1] * far[1]);
+                (whole[(j, l)], whole[(l, j)]) = (value, value);
             }
         }
         whole
@@ -173,19 +163,12 @@ impl Population {
 impl Forecast {
     /// Median and scatter in closed form: within 0.5 % of draws.
     pub fn life(&self) -> Life {
-        let n = self.cycles.len();
-        let u: Vec<f64> = (0..n).map(|j| self.cycles[j] * (0.5 * self.covariance[j * n + j]).exp()).collect();
-        let mean: f64 = u.iter().sum();
-        let mut square = 0.0;
-        for j in 0..n {
-            let row = &self.covariance[j * n..(j + 1) * n];
-            square += u[j] * row.iter().zip(&u).map(|(c, u)| c.exp_m1() * u).sum::<f64>();
-        }
+        let u = DVector::from_fn(self.cycles.len(), |j, _| self.cycles[j] * (0.5 * self.covariance[(j, j)]).exp());
+        let (mean, square) = (u.sum(), u.dot(&(self.covariance.map(f64::exp_m1) * &u)));
         let variance = (square / (mean * mean)).ln_1p();
         Life { median: mean * (-0.5 * variance).exp(), deviation: variance.sqrt(), freedom: self.freedom }
     }
 
-    /// Median cycles of every cell.
     pub fn cells(&self) -> &[f64] {
         &self.cycles
     }
@@ -199,19 +182,14 @@ impl Forecast {
     /// Specimens drawn at random, the same for the same seed: `each` has the cycles of the cells over their medians.
     /// Errors: a covariance that is not positive definite.
     pub fn draw<T>(&self, count: usize, seed: u64, mut each: impl FnMut(&[f64]) -> T) -> Result<Vec<T>> {
-        let n = self.cycles.len();
-        let mut factor = self.covariance.clone();
         let not_definite = || Error::Mechanics("the covariance of the cells is not positive definite".to_owned());
-        cholesky(&mut factor, n).ok_or_else(not_definite)?;
+        let factor = self.covariance.clone().cholesky().ok_or_else(not_definite)?.l();
         let mut normal = Normal::new(seed);
-        let (mut z, mut factors) = (vec![0.0; n], vec![0.0; n]);
         let specimen = |_| {
-            z.iter_mut().for_each(|z| *z = normal.next());
+            let z = DVector::from_fn(self.cycles.len(), |_, _| normal.next());
             let chi_square: f64 = (0..self.freedom.round() as usize).map(|_| normal.next().powi(2)).sum();
             let scale = (self.freedom.round() / chi_square).sqrt();
-            let log = |j: usize| factor[j * n..=j * n + j].iter().zip(&z).map(|(l, z)| l * z).sum::<f64>();
-            factors.iter_mut().enumerate().for_each(|(j, of_cell)| *of_cell = (scale * log(j)).exp());
-            each(&factors)
+            each((&factor * z).map(|log| (scale * log).exp()).as_slice())
         };
         Ok((0..count).map(specimen).collect())
     }

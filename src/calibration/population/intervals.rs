@@ -2,7 +2,7 @@
 //! and both as the law of a lot sees them, means over their cycles.
 
 use crate::median::{NORMAL_MEDIAN, median};
-use perilife_base::error::{Result, input};
+use perilife_base::error::{Result, fail_if, input};
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_laws::curve::{CurveLaw, EFFECTS};
 use perilife_measured::MeasuredCurve;
@@ -28,7 +28,6 @@ const GAUSS: [(f64, f64); 4] = [
 ];
 /// Pieces in which a path is divided into equal parts of the zone coordinate.
 const PATH_PIECES: usize = 400;
-
 /// ΔK (Pa√m) at a crack length (m), of one specimen or plate under its own loads.
 pub type RangeOfK<'a> = &'a dyn Fn(f64) -> f64;
 /// The same of all tips whose growth adds up to the length.
@@ -43,12 +42,10 @@ pub struct IntervalReading {
     pub counts: bool,
 }
 
-/// Growth from one crack length to a longer one.
+/// Growth from one crack length, m, to a longer one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interval {
-    /// Crack length at its start, m.
     pub from: f64,
-    /// Crack length at its end, m.
     pub to: f64,
     /// Measured cycles; NaN of a cell.
     pub cycles: f64,
@@ -69,7 +66,6 @@ impl Interval {
     }
 }
 
-/// A specimen with its reading intervals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Specimen {
     pub name: String,
@@ -118,14 +114,8 @@ impl Specimen {
                 intervals.push(Interval { cycles, ..integrate(&lengths, zone, delta_k)? });
             }
         }
-        if intervals.is_empty() {
-            return Err(input(
-                "measured.files",
-                name,
-                "has no growth beyond the scatter of its readings",
-                "give readings over more growth",
-            ));
-        }
+        let remedy = "give readings over more growth";
+        fail_if!(intervals.is_empty(), input("measured.files", name, "has no growth beyond the scatter of its readings", remedy));
         Ok(Specimen { name: name.to_owned(), intervals })
     }
 }
@@ -180,7 +170,6 @@ impl Zones {
         Ok(cells)
     }
 
-    /// End of so many pieces.
     fn length(&self, pieces: usize) -> f64 {
         self.from + (self.to - self.from) * pieces as f64 / PATH_PIECES as f64
     }
@@ -213,12 +202,8 @@ fn integrate(lengths: &[f64], zone: f64, delta_k: RangesOfTips<'_>) -> Result<In
         if tips.first().is_some_and(|k| k.is_finite() && *k > 0.0) && tips.iter().all(|k| *k >= 0.0) {
             return Ok(tips.into_iter().map(f64::ln).collect::<Vec<f64>>());
         }
-        Err(input(
-            "measured.crack_length_mm",
-            length / MM,
-            "has no stress intensity range above 0",
-            "narrow the window to lengths that the formula of the specimen covers",
-        ))
+        let remedy = "narrow the window to lengths that the formula of the specimen covers";
+        Err(input("measured.crack_length_mm", length / MM, "has no stress intensity range above 0", remedy))
     };
     let (from, to) = (lengths[0], lengths[lengths.len() - 1]);
     // Loads may change at a reading: each end has that of its own side.
@@ -285,7 +270,6 @@ fn rising(run: &[IntervalReading], least: f64) -> Vec<IntervalReading> {
     kept
 }
 
-/// An interval as the law sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct IntervalRow {
     /// Means of 1, x, φ_k over the interval, weighted with its cycles.
@@ -318,7 +302,6 @@ fn of_tips(law: &CurveLaw, log_k: &[f64]) -> ([f64; EFFECTS], f64) {
     (design.map(|sum| sum / rate), rate)
 }
 
-/// Intervals as the law sees them.
 pub(super) fn rows(law: &CurveLaw, intervals: &[Interval]) -> Vec<IntervalRow> {
     let [low, high] = law.range.map(f64::ln);
     let mut end = f64::NAN;

@@ -21,13 +21,12 @@ use serde::{Deserialize, Serialize};
 use assess::assess;
 use intervals::{IntervalRow, Specimen, rows};
 use noise::Noise;
-use perilife_base::error::{Error, Result, input_missing};
+use perilife_base::error::{Error, Result, fail_if, input_missing};
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_laws::STEADY_EXPONENTS;
 use perilife_laws::curve::{CurveLaw, EFFECTS, KNOTS, ROUGHNESS};
 use reml::{Effects, EffectsMatrix, Group, PARAMETERS, Parameters, Penalty, estimate, likelihood, minimise};
 
-/// Specimens from which on no scatter is assumed.
 const SPECIMENS_FOR_SCATTER: usize = 10;
 /// τ: rms departure of a shape from a straight line, ln of rate.
 const SHAPE_DEVIATION: f64 = 0.2;
@@ -40,13 +39,9 @@ const SHAPE_RANGE_MIN: f64 = 1.3;
 const SHAPE_INTERVALS_MIN: usize = KNOTS + 3;
 /// Range of ΔK below which rates of every exponent are alike.
 const RANGE_MIN: f64 = 1.01;
-/// Exponent from which the search for the law starts.
 const SLOPE_START: f64 = 3.0;
-/// Change of m at which the law stands still.
 const SLOPE_SAME: f64 = 1e-7;
-/// Most integrals with a new law.
 const LAWS_MAX: usize = 60;
-/// Most searches for the variances.
 const ROUNDS_MAX: usize = 8;
 /// Curvature by which a given slope is held.
 const HELD: f64 = 1e14;
@@ -56,7 +51,6 @@ const HELD: f64 = 1e14;
 pub struct Between {
     /// Standard deviation of ln rate at the pivot.
     pub level: f64,
-    /// Standard deviation of the slope.
     pub slope: f64,
     pub correlation: f64,
 }
@@ -68,7 +62,6 @@ impl Between {
     }
 }
 
-/// One specimen in the lot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Member {
     pub name: String,
@@ -78,7 +71,6 @@ pub struct Member {
     pub slope: f64,
     /// ln rate at the pivot and slope of its own readings alone, shape as of all; the slope that of the lot where it has one interval.
     pub own: [f64; 2],
-    /// Intervals that its readings make up.
     pub intervals: usize,
     /// Mean square of its noise over that of the model: far above 1 where the specimen is unlike the others.
     pub misfit: f64,
@@ -109,7 +101,6 @@ pub struct Population {
 }
 
 impl Population {
-    /// The law that lives are predicted by.
     pub fn life_law(&self) -> CurveLaw {
         CurveLaw { level: self.law.level + self.level_of_lives, ..self.law }
     }
@@ -147,9 +138,7 @@ impl Population {
 struct Priors {
     /// Place and standard deviation of ln sd of level and slope, artanh of their correlation, ln s, ln ℓ, ln w, ln r.
     normal: [(f64, f64); PARAMETERS],
-    /// Smallest of them.
     least: [f64; PARAMETERS],
-    /// Largest of them.
     most: [f64; PARAMETERS],
 }
 
@@ -182,7 +171,6 @@ impl Priors {
         (0..PARAMETERS).map(one).sum()
     }
 
-    /// Where the search starts: noise as large as the residuals of the law.
     fn start(&self, residual: f64) -> Parameters {
         let place = self.normal.map(|(place, _)| place);
         let scatter = place[3] + (residual / 0.22).clamp(1e-3, 10.0).ln();
@@ -190,7 +178,6 @@ impl Priors {
     }
 }
 
-/// Logarithm of a limit; no limit where there is none.
 fn limit(value: f64) -> f64 {
     if value.is_finite() { value.ln() } else { value }
 }
@@ -273,13 +260,10 @@ fn slope_of_readings(specimens: &[Specimen], found: &Found) -> Option<f64> {
     Some(found.covariance[(1, 1)].max(0.0).sqrt())
 }
 
-/// Range, pivot, and the power law from which the search starts.
 fn start(specimens: &[Specimen], slope: Option<f64>) -> Result<CurveLaw> {
     let all = || specimens.iter().flat_map(|specimen| &specimen.intervals);
     let count = all().count();
-    if count == 0 {
-        return Err(input_missing("measured.files", "contain no growth", "give at least one specimen with two readings"));
-    }
+    fail_if!(count == 0, input_missing("measured.files", "contain no growth", "give at least one specimen with two readings"));
     let (mut low, mut high, mut sum, mut cycles) = (f64::INFINITY, f64::NEG_INFINITY, 0.0, 0.0);
     for interval in all() {
         for &end in interval.ends.iter().flatten().filter(|end| end.is_finite()) {

@@ -10,10 +10,10 @@ use super::Population;
 use super::forecast::{BEYOND_MAX, CELLS, Forecast, Life, Lot};
 use super::intervals::{INTERVALS_MAX, Interval, IntervalReading, Specimen, Zones};
 use super::student::t_quantile;
-use perilife_base::error::{Error, InputError, Result, input};
+use perilife_base::error::{Error, Result, fail_if, input};
 use perilife_base::monotone::Monotone;
-use perilife_base::units::round_off;
-use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_base::table::Fault;
+use perilife_base::units::{MM, MPA_SQRT_M, round_off};
 use perilife_growth::case::record::FittedRecord;
 use perilife_growth::case::{Case, LawSource};
 use perilife_growth::predict::factor_curve::TipFactors;
@@ -32,10 +32,8 @@ const CELLS_OF_PIECE: usize = CELLS / 2;
 const REST_MAX: f64 = 0.02;
 /// Share of a length by which two of it may differ.
 const SAME_LENGTH: f64 = 1e-9;
-
 /// Cycles that 5, 50 and 95 % of specimens do not reach.
 pub type Quantiles = [f64; 3];
-
 /// Why a plate has no band, in words.
 pub type NoBand = String;
 
@@ -44,16 +42,13 @@ pub type NoBand = String;
 pub struct Plate {
     pub lot: Population,
     pub of: Lot,
-    /// Cycles of every row of the run.
     cycles: Vec<f64>,
     /// Way of the fastest tip at every row, the crack length at N = 0 counted, m.
     way: Vec<f64>,
     /// Crack length in the specimen's convention at every row, m.
     lengths: Vec<f64>,
-    /// ΔK over that way.
     factors: TipFactors,
     zones: Zones,
-    /// t of [`SHARES`].
     t: [f64; 3],
     /// First and last row between which ΔK is known and in range.
     known: [usize; 2],
@@ -61,25 +56,21 @@ pub struct Plate {
     beyond: f64,
 }
 
-/// Band of the lives of a lot on a plate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlateBand {
     /// Cycles at which the crack is as long as in every row.
     pub reached: Vec<Quantiles>,
     /// Cycles from there to the end of the run; NaN where ΔK is not known.
     pub left: Vec<Quantiles>,
-    /// Share of the life outside the calibrated range of ΔK.
     pub share_outside: f64,
 }
 
-/// What a plate has left, from a crack length on.
+/// What is left at a crack length, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Left {
-    /// Crack length, m.
     pub crack_length: f64,
     /// Cycles to the end of the run by its own constants.
     pub cycles: f64,
-    /// Cycles of the lot.
     pub quantiles: Quantiles,
 }
 
@@ -119,32 +110,23 @@ impl Population {
 /// Why lives of a case can have no band, whatever its run gives; the lot where they can.
 /// Errors: as [`Population::of_record`].
 pub fn lot_of(case: &Case) -> Result<std::result::Result<Population, NoBand>> {
-    if case.fatigue.initiation.is_some() {
-        return Ok(Err("scatter of the S-N curve unknown".to_owned()));
-    }
-    let LawSource::Fitted(record) = &case.law else {
-        return Ok(Err("growth law entered as constants; use a fitted law".to_owned()));
+    let record = match &case.law {
+        _ if case.fatigue.initiation.is_some() => return Ok(Err("scatter of the S-N curve unknown".to_owned())),
+        LawSource::Fitted(record) => record,
+        _ => return Ok(Err("growth law entered as constants; use a fitted law".to_owned())),
     };
-    let Some(lot) = Population::of_record(record)? else {
-        return Ok(Err("fitted law without [population]; calibrate again".to_owned()));
+    let (given, recorded) = (case.loading.ratio, record.stress_ratio);
+    let is_sum = case.specimen.convention == LengthConvention::SumOfTips;
+    let why = match Population::of_record(record)? {
+        None => "fitted law without [population]; calibrate again",
+        Some(_) if case.loading.residual.is_some() => "not available with residual stress",
+        Some(_) if case.loading.spectrum.is_some() => "not available for spectrum loading",
+        Some(_) if (given - recorded).abs() > 1e-9 => &format!("law fitted at R = {recorded}, case R = {given}"),
+        Some(_) if !case.specimen.is_through() => "not available for part-through cracks",
+        Some(_) if is_sum && case.spends_bond_life() => "not available with driver = \"bond_strain\"",
+        Some(lot) => return Ok(Ok(lot)),
     };
-    if case.loading.residual.is_some() {
-        return Ok(Err("not available with residual stress".to_owned()));
-    }
-    if case.loading.spectrum.is_some() {
-        return Ok(Err("not available for spectrum loading".to_owned()));
-    }
-    if (case.loading.ratio - record.stress_ratio).abs() > 1e-9 {
-        let (given, recorded) = (case.loading.ratio, record.stress_ratio);
-        return Ok(Err(format!("law fitted at R = {recorded}, case R = {given}")));
-    }
-    if !case.specimen.is_through() {
-        return Ok(Err("not available for part-through cracks".to_owned()));
-    }
-    if case.specimen.convention == LengthConvention::SumOfTips && case.spends_bond_life() {
-        return Ok(Err("not available with driver = \"bond_strain\"".to_owned()));
-    }
-    Ok(Ok(lot))
+    Ok(Err(why.to_owned()))
 }
 
 impl Plate {
@@ -157,9 +139,7 @@ impl Plate {
 
     fn new(lot: Population, case: &Case, prediction: &Prediction) -> std::result::Result<Self, NoBand> {
         let (Some(life), rows) = (prediction.life(), &prediction.curve) else { return Err("the life is unlimited".to_owned()) };
-        if life <= 0.0 {
-            return Err("no crack grew".to_owned());
-        }
+        fail_if!(life <= 0.0, "no crack grew".to_owned());
         let (way, governing) = (way(case, prediction), GoverningCrack::of(&case.specimen, rows));
         let known: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].delta_k.is_finite() && rows[i].delta_k > 0.0).collect();
         let [low, high] = [lot.law.range[0] / BEYOND_MAX, lot.law.range[1] * BEYOND_MAX];
@@ -183,9 +163,7 @@ impl Plate {
             is_longer.then(|| (way[i], rows[i].delta_k))
         });
         let rising: Vec<(f64, f64)> = rising.collect();
-        if rising.len() < 2 || rows[last].cycles <= rows[first].cycles {
-            return Err("no crack grew".to_owned());
-        }
+        fail_if!(rising.len() < 2 || rows[last].cycles <= rows[first].cycles, "no crack grew".to_owned());
         let factors = TipFactors::new(rising.iter().copied());
         let zones = Zones::new(way[first], way[last], &|way| factors.at(way)).map_err(words)?;
         let t = t_quantile(SHARES[2], lot.freedom);
@@ -306,21 +284,12 @@ impl Plate {
         for (i, &length) in curve.crack_length.iter().enumerate() {
             if length < shortest * (1.0 - SAME_LENGTH) || length > longest * (1.0 + SAME_LENGTH) {
                 let Source { file, length_column, length_unit, .. } = &curve.source;
-                return Err(Error::Input(Box::new(InputError {
-                    file: Some(file.clone()),
-                    line: Some(curve.line(i)),
-                    key: Some(length_column.clone()),
-                    value: Some(round_off(length / length_unit).to_string()),
-                    problem: format!(
-                        "is not on the predicted curve, {} to {} mm",
-                        round_off(shortest / MM),
-                        round_off(longest / MM)
-                    ),
-                    remedy:
-                        "give readings of this plate within it, or the crack length of the first one as specimen.crack_length_mm"
-                            .to_owned(),
-                    more: Vec::new(),
-                })));
+                let value = round_off(length / length_unit).to_string();
+                let fault = Fault { file, line: Some(curve.line(i)), key: Some(length_column), value: Some(&value) };
+                let [from, to] = [shortest, longest].map(|length| round_off(length / MM));
+                let remedy =
+                    "give readings of this plate within it, or the crack length of the first one as specimen.crack_length_mm";
+                return Err(fault.error(format!("is not on the predicted curve, {from} to {to} mm"), remedy));
             }
         }
         let loads = curve.load_history();
@@ -416,10 +385,8 @@ fn scaled(quantiles: Quantiles, run: f64, of: f64) -> Quantiles {
 
 fn out_of_range(lot: &Population, delta_k: f64) -> NoBand {
     let [low, high] = lot.law.range.map(|k| k / MPA_SQRT_M);
-    format!(
-        "ΔK = {:.2} MPa√m is more than a factor {BEYOND_MAX} outside the tested {low:.2} to {high:.2} MPa√m",
-        delta_k / MPA_SQRT_M
-    )
+    let k = delta_k / MPA_SQRT_M;
+    format!("ΔK = {k:.2} MPa√m is more than a factor {BEYOND_MAX} outside the tested {low:.2} to {high:.2} MPa√m")
 }
 
 fn words(error: Error) -> NoBand {

@@ -9,11 +9,11 @@ use std::sync::Mutex;
 use argmin::core::{CostFunction, Executor, Gradient};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
-use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+use nalgebra::{DMatrix, Matrix2, SMatrix, SVector, Vector2};
 use rayon::prelude::*;
 
 use super::intervals::IntervalRow;
-use super::noise::{Noise, cholesky, whiten};
+use super::noise::Noise;
 use super::{Between, Priors};
 use perilife_laws::curve::EFFECTS;
 
@@ -21,17 +21,14 @@ use perilife_laws::curve::EFFECTS;
 pub(super) const PARAMETERS: usize = 7;
 /// The first of those that change the Cholesky factor; s is a factor of all the noise.
 const FIRST_OF_FACTOR: usize = 4;
-/// Step of central differences.
 const STEP: f64 = 1e-4;
 /// Where the search ends, in units of roughly a standard error.
 const GRADIENT_MIN: f64 = 1e-4;
-/// Most steps of the search.
 const STEPS_MAX: u64 = 100;
 /// Standard deviation that levels have in the estimate of the law.
 const LEVEL_FREE: f64 = 1.0;
 /// Likelihood where a covariance is not positive definite.
 const IMPOSSIBLE: f64 = 1e12;
-
 pub(super) type Effects = SVector<f64, EFFECTS>;
 pub(super) type EffectsMatrix = SMatrix<f64, EFFECTS, EFFECTS>;
 pub(super) type Parameters = [f64; PARAMETERS];
@@ -41,7 +38,6 @@ pub(super) struct Group {
     pub rows: Vec<IntervalRow>,
     /// ln of cycles by the law over measured ones, of every specimen.
     pub residuals: Vec<Vec<f64>>,
-    /// Places of the specimens among all.
     pub members: Vec<usize>,
 }
 
@@ -91,38 +87,19 @@ fn products(groups: &[Group], at: &Parameters) -> Option<Vec<Products>> {
 }
 
 fn of_group(group: &Group, unit: &Noise) -> Option<Products> {
-    let n = group.rows.len();
-    let mut factor = unit.covariance(&group.rows);
-    cholesky(&mut factor, n)?;
-    let columns = EFFECTS + group.residuals.len();
-    let mut white = Vec::with_capacity(n * columns);
-    for (j, row) in group.rows.iter().enumerate() {
-        white.extend(row.design);
-        white.extend(group.residuals.iter().map(|residual| residual[j]));
-    }
-    whiten(&factor, n, &mut white, columns);
-    let mut found = Products {
+    let (n, specimens) = (group.rows.len(), group.residuals.len());
+    let factor = unit.covariance(&group.rows).cholesky()?;
+    let entry = |j: usize, k: usize| if k < EFFECTS { group.rows[j].design[k] } else { group.residuals[k - EFFECTS][j] };
+    let mut white = DMatrix::from_fn(n, EFFECTS + specimens, entry);
+    factor.l_dirty().solve_lower_triangular_mut(&mut white);
+    let (x, residuals) = (white.fixed_columns::<EFFECTS>(0), white.columns(EFFECTS, specimens));
+    Some(Products {
         intervals: n as f64,
-        log_determinant: (0..n).map(|i| 2.0 * factor[i * n + i].ln()).sum(),
-        xx: EffectsMatrix::zeros(),
-        xr: vec![Effects::zeros(); group.residuals.len()],
-        rr: vec![0.0; group.residuals.len()],
-    };
-    for row in white.chunks_exact(columns) {
-        let (x, residuals) = row.split_at(EFFECTS);
-        for (i, a) in x.iter().enumerate() {
-            for (j, b) in x.iter().enumerate() {
-                found.xx[(i, j)] += a * b;
-            }
-        }
-        for (k, r) in residuals.iter().enumerate() {
-            for (i, a) in x.iter().enumerate() {
-                found.xr[k][i] += a * r;
-            }
-            found.rr[k] += r * r;
-        }
-    }
-    Some(found)
+        log_determinant: factor.l_dirty().diagonal().iter().map(|l| 2.0 * l.ln()).sum(),
+        xx: x.tr_mul(&x),
+        xr: residuals.column_iter().map(|residual| x.tr_mul(&residual)).collect(),
+        rr: residuals.column_iter().map(|residual| residual.norm_squared()).collect(),
+    })
 }
 
 fn top(matrix: &EffectsMatrix) -> Matrix2<f64> {
@@ -270,7 +247,6 @@ fn search<'a>(groups: &'a [Group], penalty: &'a Penalty, priors: &'a Priors, sta
     Search { groups, penalty, priors, unit, best: Mutex::new((f64::INFINITY, *start)) }
 }
 
-/// Parameters of the smallest likelihood.
 pub(super) fn minimise(groups: &[Group], penalty: &Penalty, priors: &Priors, start: &Parameters) -> Parameters {
     let problem = search(groups, penalty, priors, start);
     let scaled: Vec<f64> = start.iter().zip(problem.unit).map(|(value, unit)| value / unit).collect();

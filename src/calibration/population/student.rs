@@ -1,8 +1,8 @@
 //! Student's t distribution and the noncentral one, by quadrature over the scatter that is estimated.
 
+use perilife_base::monotone::bisected;
 use perilife_base::quadrature::integrate;
 
-/// Halvings of an interval of quantiles.
 const HALVINGS: usize = 80;
 
 /// Standard normal distribution to the last digit (that of `statrs` is right to eleven).
@@ -30,21 +30,10 @@ pub fn noncentral_t_quantile(probability: f64, nu: f64, shift: f64) -> f64 {
     while noncentral_t_cdf(high, nu, shift) < probability {
         high = shift + 2.0 * (high - shift);
     }
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if noncentral_t_cdf(middle, nu, shift) < probability {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let [low, high] = bisected([low, high], HALVINGS, |t| noncentral_t_cdf(t, nu, shift) < probability);
     0.5 * (low + high)
 }
 
-/// Quantile of Student's t.
 pub fn t_quantile(probability: f64, nu: f64) -> f64 {
     noncentral_t_quantile(probability, nu, 0.0)
 }

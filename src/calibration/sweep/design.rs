@@ -3,7 +3,7 @@
 use toml::{Table, Value};
 
 use super::vary::{DesignKind, Spread, Vary};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::Document;
 use perilife_base::keys::{self, key};
 
@@ -17,12 +17,10 @@ perilife_base::kinds! {
 
 /// Cases that a sweep may have unless more are asked for.
 pub const CASES_MAX: usize = 10_000;
-/// Seed where the file gives none.
 const SEED: u64 = 1;
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Design {
-    /// How cases are chosen.
     pub kind: DesignKind,
     pub cases: usize,
     pub seed: u64,
@@ -30,7 +28,6 @@ pub struct Design {
     pub vary: Vec<Vary>,
 }
 
-/// A sweep file with its base case.
 #[derive(Debug, Clone)]
 pub struct Sweep {
     pub name: String,
@@ -39,21 +36,16 @@ pub struct Sweep {
     pub design: Design,
 }
 
-/// Whether these are the sections of a sweep.
 pub fn is_sweep(table: &Table) -> bool {
     table.contains_key("design")
 }
 
 perilife_base::keys! {
-    /// The sweep file as a whole.
     pub struct SweepKeys {
         case: String = key("case", "Base case: its file");
         design: DesignKeys = key("design", "Design: grid or random");
         vary: Vec<Value> = key("vary", "Keys that vary"), or "none" Vec::new();
     }
-}
-perilife_base::keys! {
-    /// Keys of `[design]`.
     pub struct DesignKeys {
         kind: DesignKind = key("kind", "Design");
         samples: Option<usize> = key("samples", "Number of cases: of a random design");
@@ -90,17 +82,12 @@ fn read_design(keys: &DesignKeys, vary: &[Value], most: usize) -> Result<Design>
             return Err(input(&place, format!("\"{}\"", one.key), "is given twice", "give each key once"));
         }
     }
-    if vary.is_empty() && kind != DesignKind::FittedScatter {
-        return Err(input_missing("vary", "is missing: no key varies", "write a section [[vary]] with a key and its values"));
-    }
+    let remedy = "write a section [[vary]] with a key and its values";
+    fail_if!(vary.is_empty() && kind != DesignKind::FittedScatter, input_missing("vary", "is missing: no key varies", remedy));
     if let Some(scatter) = keys.scatter.filter(|_| kind != DesignKind::FittedScatter) {
         let remedy = format!("remove it, or use kind = \"{}\"", DesignKind::FittedScatter);
-        return Err(input(
-            "design.scatter",
-            format!("\"{scatter}\""),
-            format!("cannot be combined with kind = \"{kind}\""),
-            remedy,
-        ));
+        let problem = format!("cannot be combined with kind = \"{kind}\"");
+        return Err(input("design.scatter", format!("\"{scatter}\""), problem, remedy));
     }
     let cases = match kind {
         DesignKind::Grid => grid_size(keys, &vary, most)?,
@@ -114,7 +101,6 @@ fn read_design(keys: &DesignKeys, vary: &[Value], most: usize) -> Result<Design>
     Ok(Design { kind, cases, seed: keys.seed.unwrap_or(SEED), scatter: keys.scatter.unwrap_or(Scatter::Specimens), vary })
 }
 
-/// Number of combinations.
 fn grid_size(keys: &DesignKeys, vary: &[Vary], most: usize) -> Result<usize> {
     let stranger = keys.samples.map(|n| ("design.samples", n as u64)).or(keys.seed.map(|seed| ("design.seed", seed)));
     if let Some((key, value)) = stranger {
@@ -126,13 +112,9 @@ fn grid_size(keys: &DesignKeys, vary: &[Vary], most: usize) -> Result<usize> {
 }
 
 fn check_size(key: &str, cases: usize, most: usize) -> Result<usize> {
-    if cases == 0 {
-        return Err(input(key, cases, "must be at least 1", "give at least 1"));
-    }
-    if cases > most {
-        let problem = format!("makes {cases} cases; limit {most}");
-        return Err(input(key, format!("{cases} cases"), problem, "make it smaller, or allow more by --most"));
-    }
+    fail_if!(cases == 0, input(key, cases, "must be at least 1", "give at least 1"));
+    let problem = || format!("makes {cases} cases; limit {most}");
+    fail_if!(cases > most, input(key, format!("{cases} cases"), problem(), "make it smaller, or allow more by --most"));
     Ok(cases)
 }
 

@@ -49,10 +49,8 @@ impl FromStr for Detection {
     }
 }
 
-/// Inspections of a life.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Schedule {
-    /// How they find cracks.
     pub detection: Detection,
     /// Cycles of the first, and from each to the next.
     pub cycles: [f64; 2],
@@ -62,7 +60,6 @@ pub struct Schedule {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inspected {
     schedule: Schedule,
-    /// How many there were.
     pub count: usize,
     /// Probability that none of them has found the crack.
     pub missed: f64,

@@ -9,23 +9,18 @@ use statrs::distribution::{ContinuousCDF, Normal};
 /// A distribution with its parameters, in the unit of its key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Distribution {
-    /// Every value between two is equally likely.
     Uniform {
-        /// Lowest value.
         from: f64,
-        /// Highest value.
         to: f64,
     },
-    /// The logarithm is uniform.
     LogUniform {
-        /// Lowest value, above zero.
         from: f64,
-        /// Highest value.
         to: f64,
     },
-    /// Gauss.
-    Normal { mean: f64, deviation: f64 },
-    /// The logarithm is normal.
+    Normal {
+        mean: f64,
+        deviation: f64,
+    },
     LogNormal {
         median: f64,
         /// Standard deviation of the natural logarithm.

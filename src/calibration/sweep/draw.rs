@@ -11,15 +11,12 @@ use super::vary::{DesignKind, Spread};
 use perilife_base::error::{Error, InputError, Result, input_missing};
 use perilife_base::input::{Document, Folder, value_at};
 use perilife_growth::case::record::FittedRecord;
-use perilife_growth::case::remove_law;
-use perilife_growth::case::{Case, LawSource, Method, fitted_record};
+use perilife_growth::case::{Case, LawSource, Method, fitted_record, remove_law};
 
-/// Name of a drawn record among the files of its case.
 const FITTED: &str = "fitted.toml";
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawnCase {
-    /// Number, from 1.
     pub number: usize,
     /// Its name: that of the base case with the number.
     pub name: String,
@@ -33,13 +30,11 @@ pub struct DrawnCase {
 }
 
 impl DrawnCase {
-    /// The case, checked.
     pub fn read(&self) -> Result<Case> {
         let folder = Folder::at_hand(self.files.iter().cloned());
         Case::from_document(&Document::parse(&self.text, &self.name, folder, &[])?)
     }
 
-    /// Number as folders and tables write it.
     pub fn label(&self) -> String {
         label(self.number)
     }
@@ -122,17 +117,13 @@ impl Sweep {
         values
     }
 
-    /// The scatter of the law of the base case.
     fn law(&self) -> Result<LawScatter> {
         let fitted =
             value_at(&Value::Table(self.base.table.clone()), "fatigue.fitted").and_then(|name| name.as_str().map(str::to_owned));
         let Some(fitted) = fitted else {
             let problem = format!("is missing (required by design.kind = \"{}\")", DesignKind::FittedScatter);
-            return Err(self.base.locate(input_missing(
-                "fatigue.fitted",
-                problem,
-                "give the fitted.toml of `perilife calibrate`",
-            )));
+            let remedy = "give the fitted.toml of `perilife calibrate`";
+            return Err(self.base.locate(input_missing("fatigue.fitted", problem, remedy)));
         };
         let record = fitted_record(&fitted, &self.base.folder)?;
         scatter::read(record, &fitted, &self.base.folder, self.design.scatter)
@@ -143,12 +134,8 @@ impl Sweep {
         for (i, (one, value)) in self.design.vary.iter().zip(&draw.values).enumerate() {
             let place = |error| self.document.locate(error);
             document.put(&one.key, value.clone()).map_err(|problem| {
-                place(perilife_base::error::input(
-                    &format!("vary[{i}].key"),
-                    format!("\"{}\"", one.key),
-                    problem,
-                    "give a key of the case",
-                ))
+                let value = format!("\"{}\"", one.key);
+                place(perilife_base::error::input(&format!("vary[{i}].key"), value, problem, "give a key of the case"))
             })?;
         }
         let mut drawn = Vec::new();
@@ -214,7 +201,6 @@ fn read(document: &Document) -> Result<()> {
     }
 }
 
-/// TOML of something that was read from TOML.
 fn text_of(value: &impl serde::Serialize, what: &str) -> Result<String> {
     toml::to_string(value)
         .map_err(|error| input_missing(what, format!("cannot be written as TOML: {error}"), "write it as plain TOML"))

@@ -43,7 +43,6 @@ pub struct FleetPlate {
     pub missed: Option<f64>,
 }
 
-/// How the plates of a fleet are looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Looks {
     /// Length from which on cracks can be found, m, as [`FleetPlate::initial_length`].
@@ -56,14 +55,11 @@ pub struct Looks {
     pub first: Option<f64>,
 }
 
-/// What inspections find of a fleet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Looked {
     /// Cycles of the first inspection of all plates.
     pub first: f64,
-    /// Cycles from one inspection to the next.
     pub every: f64,
-    /// Plates that break before the first.
     pub before_first: usize,
     /// Probability that a crack is missed by the first inspection, by the first two, and so on; mean over the plates that end.
     pub missed_after: Vec<f64>,
@@ -122,10 +118,8 @@ pub fn lives(
     Ok(FleetLives { plates, looked, one_law: plate.err().cloned() })
 }
 
-/// What was seen of a crack that grew.
 #[derive(Default)]
 struct Seen {
-    /// Cycles at which it became detectable.
     detectable_at: Option<f64>,
     /// Its last length, m.
     last: Option<f64>,
@@ -264,7 +258,6 @@ impl LotRates {
     }
 }
 
-/// Initial crack length, m, at a probability.
 fn length(of: InitialLength, probability: f64) -> f64 {
     match of {
         InitialLength::LogNormal { median, deviation_ln } => median * (deviation_ln * normal_quantile(probability)).exp(),

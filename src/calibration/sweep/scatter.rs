@@ -18,7 +18,7 @@ use serde::Deserialize;
 use super::design::Scatter;
 use super::distribution::normal_quantile;
 use crate::record::SpecimenRecord;
-use perilife_base::error::{Error, Result, input, input_missing};
+use perilife_base::error::{Error, Result, fail_if, input, input_missing};
 use perilife_base::input::Folder;
 use perilife_base::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::record::FittedRecord;
@@ -50,16 +50,13 @@ pub struct LawScatter {
 impl LawScatter {
     /// Scatter from specimen to specimen: mean and covariance (over n - 1) of their own fits.
     pub fn of_specimens(record: FittedRecord, fits: &SpecimenFits) -> Result<Self> {
-        if (fits.p / record.p - 1.0).abs() > 1e-9 {
-            let problem = format!("differs from the exponent in fit.json, {}", record.p);
-            return Err(input("p", fits.p, problem, "keep fitted.toml and fit.json of one calibration together"));
-        }
+        let problem = || format!("differs from the exponent in fit.json, {}", record.p);
+        let remedy = "keep fitted.toml and fit.json of one calibration together";
+        fail_if!((fits.p / record.p - 1.0).abs() > 1e-9, input("p", fits.p, problem(), remedy));
         let n = fits.specimens.len();
-        if n < SPECIMENS_MIN {
-            let problem = format!("are too few for a scatter (need {SPECIMENS_MIN})");
-            let remedy = "calibrate on more specimens, or use design.scatter = \"constants\"";
-            return Err(input("specimens", format!("{n} specimens"), problem, remedy));
-        }
+        let problem = || format!("are too few for a scatter (need {SPECIMENS_MIN})");
+        let remedy = "calibrate on more specimens, or use design.scatter = \"constants\"";
+        fail_if!(n < SPECIMENS_MIN, input("specimens", format!("{n} specimens"), problem(), remedy));
         // In the unit of the specimens' own.
         let of_record = if record.a.is_finite() { record.a } else { record.paris_c_mm_per_cycle * MM_PER_CYCLE };
         let slope = slope(&record)?;

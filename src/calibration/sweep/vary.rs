@@ -3,31 +3,25 @@
 use toml::Value;
 
 use super::distribution::Distribution;
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Error, Result, fail_if, input, input_missing};
 use perilife_base::keys::{Given, key, section};
 use perilife_growth::case::SECTIONS;
 use perilife_laws::growth_law::description::law_keys;
 
 perilife_base::kinds! {
-    /// How the cases of a sweep are chosen.
     pub enum DesignKind for "design.kind" {
         Grid = "grid": "every combination of the values of all keys, the last key fastest",
         LatinHypercube = "latin_hypercube": "random (Latin hypercube): one value of each key from each stratum",
         FittedScatter = "fitted_scatter": "growth law sampled from the scatter of a calibration; other keys may vary too",
     }
-}
 
-perilife_base::kinds! {
-    /// Shape of a distribution.
     pub enum DistributionKind for "vary.distribution" {
         Uniform = "uniform": "uniform between from and to",
         LogUniform = "log_uniform": "uniform in the logarithm between from and to",
         Normal = "normal": "normal, with mean and standard_deviation",
         LogNormal = "log_normal": "the logarithm is normal, with median and standard_deviation_ln, or factor = exp of it",
     }
-}
 
-perilife_base::kinds! {
     /// How the values of a grid lie between two.
     pub enum Scale for "vary.scale" {
         Linear = "linear": "equal differences",
@@ -35,14 +29,12 @@ perilife_base::kinds! {
     }
 }
 
-/// A key that varies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vary {
     pub key: String,
     pub spread: Spread,
 }
 
-/// Values of a key.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Spread {
     Values(Vec<Value>),
@@ -50,7 +42,6 @@ pub enum Spread {
 }
 
 perilife_base::keys! {
-    /// Keys of `[[vary]]`.
     pub struct VaryKeys {
         key: String = key("key", "Key of the case: section.key");
         values: Option<Vec<Value>> = key("values", "Values: of a grid");
@@ -96,36 +87,23 @@ fn check_key(key: &str, path: &str, kind: DesignKind) -> Result<()> {
     Ok(())
 }
 
-/// A `[[vary]]` with its place in the file.
 struct Reader<'a> {
     input: &'a VaryKeys,
     given: Given<'a>,
 }
 
-/// Keys of random designs.
 const OF_DISTRIBUTIONS: [&str; 6] = ["distribution", "mean", "standard_deviation", "median", "factor", "standard_deviation_ln"];
-/// Keys of grids without values.
 const OF_SPACING: [&str; 4] = ["from", "to", "count", "scale"];
 
 impl Reader<'_> {
     fn grid(&self, most: usize) -> Result<Spread> {
-        let input = self.input;
         let problem = "applies only to a random design; this is a grid";
         self.given.refuse_any(&OF_DISTRIBUTIONS, problem, "give values, or from, to and count")?;
-        let Some(values) = &input.values else { return self.spaced(most) };
+        let Some(values) = &self.input.values else { return self.spaced(most) };
         self.given.refuse_any(&OF_SPACING, "conflicts with values", "give values, or from, to and count")?;
-        if values.is_empty() {
-            return Err(perilife_base::error::input(&self.key("values"), "[]", "is empty", "give at least one value"));
-        }
-        for value in values {
-            if value.as_float().is_some_and(|number| !number.is_finite()) {
-                return Err(perilife_base::error::input(
-                    &self.key("values"),
-                    value,
-                    "is not a finite number",
-                    "give finite numbers",
-                ));
-            }
+        fail_if!(values.is_empty(), input(&self.key("values"), "[]", "is empty", "give at least one value"));
+        if let Some(value) = values.iter().find(|value| value.as_float().is_some_and(|number| !number.is_finite())) {
+            return Err(input(&self.key("values"), value, "is not a finite number", "give finite numbers"));
         }
         Ok(Spread::Values(values.clone()))
     }
@@ -214,24 +192,18 @@ impl Reader<'_> {
 
     fn rising(&self) -> Result<[f64; 2]> {
         let (from, to) = (self.number("from", self.input.from)?, self.number("to", self.input.to)?);
-        if from >= to {
-            return Err(input(&self.key("to"), to, format!("is not above from = {from}"), "give from < to"));
-        }
+        fail_if!(from >= to, input(&self.key("to"), to, format!("is not above from = {from}"), "give from < to"));
         Ok([from, to])
     }
 
     fn number(&self, key: &str, value: Option<f64>) -> Result<f64> {
         let value = value.ok_or_else(|| self.missing(key))?;
-        if !value.is_finite() {
-            return Err(input(&self.key(key), value, "is not a finite number", "give a finite number"));
-        }
+        fail_if!(!value.is_finite(), input(&self.key(key), value, "is not a finite number", "give a finite number"));
         Ok(value)
     }
 
     fn above_zero(&self, key: &str, value: f64) -> Result<f64> {
-        if value <= 0.0 {
-            return Err(input(&self.key(key), value, "must be above zero", "give a number above zero"));
-        }
+        fail_if!(value <= 0.0, input(&self.key(key), value, "must be above zero", "give a number above zero"));
         Ok(value)
     }
 
@@ -239,7 +211,7 @@ impl Reader<'_> {
         self.given.path_of(key)
     }
 
-    fn missing(&self, key: &str) -> perilife_base::error::Error {
+    fn missing(&self, key: &str) -> Error {
         let remedy = match key {
             "from" | "to" | "count" if self.input.distribution.is_none() => "give values, or from, to and count",
             "distribution" => "give uniform, log_uniform, normal or log_normal",

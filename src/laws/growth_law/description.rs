@@ -19,7 +19,6 @@ perilife_base::kinds! {
 
 /// A law of growth: its formula, and it in the words and numbers of input files. Formulas take the constants in SI units, in their order.
 pub struct GrowthLawSpec {
-    /// Name in input and result files.
     pub name: &'static str,
     pub meaning: &'static str,
     /// Its constants: the level C, by which all rates are in proportion, first; then the exponent of ΔK.
@@ -31,12 +30,11 @@ pub struct GrowthLawSpec {
     /// Reads it from a case; `None` for bonds and powers of ΔK, either of which can stand for the other.
     pub read: Option<fn(&Given<'_>, &'static GrowthLawSpec) -> Result<FactorLaw>>,
     /// Keys of its own that are no constants.
-    pub others: &'static [&'static str],
+    pub others: &'static [Key],
     /// What to give where constants are missing.
     pub complete: &'static str,
     /// Meaning as one of the laws that rates are fitted by.
     pub fit: Option<&'static str>,
-    /// Factors that rates need not tell.
     pub factors: &'static [Factor],
     /// Whether it holds at other stress ratios than those of its rates.
     pub takes_ratio: bool,
@@ -63,10 +61,8 @@ pub(super) const UNSAID: GrowthLawSpec = GrowthLawSpec {
     compression: None,
 };
 
-/// What a constant is to the rates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Role {
-    /// Nothing else.
     Plain,
     /// K_max at which a crack grows without limit; a case without it takes the toughness of the material. A search has the variable u of
     /// `K_max (1 + e^u)`, above every K_max of the rates.
@@ -82,7 +78,6 @@ pub struct Constant {
     pub key: &'static str,
     /// Name among the constants in SI units of a result; constants of one name are a list there, the last one first.
     pub name: &'static str,
-    /// Unit and bounds of reason.
     pub quantity: Quantity,
     pub role: Role,
     /// Whether it is the exponent of ΔK.
@@ -91,9 +86,7 @@ pub struct Constant {
     pub default: Option<f64>,
     /// Value in a fit where it is not given; `None`: it is searched.
     pub held: Option<f64>,
-    /// Ends of the search, of its variable.
     pub bounds: [f64; 2],
-    /// Where searches start, of its variable.
     pub starts: [f64; 2],
     pub needs: Evidence,
     /// Standard error above which it is not determined: a share of its value, or an absolute one where it needs several ratios.
@@ -108,7 +101,6 @@ pub(super) const NEAR_FRACTURE: Evidence = Evidence("needs rates near fracture",
 pub(super) const NEAR_THRESHOLD: Evidence = Evidence("needs rates near the threshold", false);
 pub(super) const RATIOS: Evidence = Evidence("needs rates at several stress ratios", true);
 const POWER: Evidence = Evidence("needs rates over a wide range of ΔK", false);
-
 const THRESHOLD: &str = "delta_k_threshold_mpa_sqrt_m";
 /// Level C of a law.
 pub(super) const fn rate_of(what: &'static str) -> Quantity {
@@ -139,22 +131,19 @@ impl Constant {
         Constant { is_exponent: true, ..constant }
     }
 
-    /// The same, searched between ends from starts.
     pub const fn searched(self, bounds: [f64; 2], starts: [f64; 2], needs: Evidence, error_max: f64) -> Self {
         Constant { bounds, starts, needs, error_max, ..self }
     }
 
-    /// Whether several laws have it.
     pub fn is_shared(&self) -> bool {
         [K_C.key, GAMMA.key].contains(&self.key)
     }
 }
 
 impl GrowthLawSpec {
-    /// Keys that no law of other constants has.
     fn own_keys(&self) -> Vec<&'static str> {
         let constants = self.constants.iter().filter(|constant| !constant.is_shared());
-        constants.map(|constant| constant.key).chain(self.others.iter().copied()).collect()
+        constants.map(|constant| constant.key).chain(self.others.iter().map(|key| key.name)).collect()
     }
 
     /// The law with constants in the units of their keys.
@@ -191,7 +180,6 @@ pub struct Rates {
     pub columns: [String; 2],
     /// Whether the file, or the user, says the stress ratio.
     pub says_ratio: bool,
-    /// What the user should know of it.
     pub notes: Vec<String>,
     pub rows: Vec<RatedRow>,
 }
@@ -199,7 +187,6 @@ pub struct Rates {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RatedRow {
     pub line: usize,
-    /// Stress ratio R.
     pub ratio: f64,
     /// ΔK, Pa√m, and da/dN, m/cycle.
     pub pair: [f64; 2],
@@ -211,7 +198,6 @@ pub struct Given<'a> {
     pub material: &'a Material,
     /// Smallest and largest stress ratio of the cycles of the case.
     pub ratios: [f64; 2],
-    /// Folder of the files it names.
     pub folder: &'a Folder,
     /// Reads the table of rates that a key names; `None` where the case does not give it.
     pub rates: fn(&Given<'_>, &str) -> Result<Option<Rates>>,
@@ -282,8 +268,7 @@ pub fn keys_to_tell() -> Vec<Key> {
             keys.push(Key::of_constant(constant.key, constant.quantity, ""));
         }
     }
-    keys.push(Key::of_choice::<String>("growth_table", "Table of rates: its file"));
-    keys.push(Key::of_choice::<TableEnds>("growth_table_ends", "Ends of the table: beyond its rows; default refused"));
+    keys.extend(GrowthLawKind::all().flat_map(|kind| kind.0.others));
     keys
 }
 

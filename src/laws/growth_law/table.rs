@@ -4,23 +4,24 @@ use serde::Serialize;
 
 use super::FactorLaw;
 use super::description::{GAMMA, Given, GrowthLawSpec, RatedRow, Rates, TableEnds, UNSAID};
-use super::rising::rising;
-use perilife_base::error::{Error, InputError, Result, input, input_missing};
+use perilife_base::error::{Error, InputError, Result, fail_if, input, input_missing};
+use perilife_base::keys::Key;
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M, round_off};
 use perilife_plate::loading::SAME_RATIO;
 
-/// What it says of itself.
 pub static LAW: GrowthLawSpec = GrowthLawSpec {
     name: "table",
     meaning: "da/dN over ΔK, and over R, as rows of a CSV file",
     constants: &[GAMMA],
-    others: &["growth_table", "growth_table_ends"],
+    others: &[
+        Key::of_choice::<String>("growth_table", "Table of rates: its file"),
+        Key::of_choice::<TableEnds>("growth_table_ends", "Ends of the table: beyond its rows; default refused"),
+    ],
     read: Some(|given, law| Ok(FactorLaw { table: Some(read(given)?), ..FactorLaw::new(law, Vec::new()) })),
     ..UNSAID
 };
 
 const KEY: &str = "fatigue.growth_table";
-
 /// Distance of a ratio from that of a curve up to which it has the whole of it, not the rates alone that the next one has too.
 const NEAR_RATIO: f64 = 0.005;
 
@@ -30,7 +31,6 @@ const NEAR_RATIO: f64 = 0.005;
 /// alone holds at another by Walker's exponent (1970): its rate is that at `ΔK₀ = K_max (1-R)^γ (1-R₀)^(1-γ)`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Table {
-    /// By rising ratio.
     pub curves: Vec<Curve>,
     /// Whether K beyond the ends takes the rate of the end; else it is refused.
     pub holds_ends: bool,
@@ -41,15 +41,12 @@ pub struct Table {
     /// ln of rate and of ΔK at two ratios, at every row of either: of each curve (twice itself) and of it with the next, in turn.
     #[serde(skip)]
     bands: Vec<Vec<[f64; 3]>>,
-    /// What the user should know of its rows.
     #[serde(skip)]
     notes: Vec<String>,
 }
 
-/// Rates at one stress ratio.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Curve {
-    /// Stress ratio R.
     pub ratio: f64,
     /// ΔK in Pa√m and da/dN in m/cycle, both rising.
     pub rows: Vec<[f64; 2]>,
@@ -90,7 +87,6 @@ impl Table {
         Table { bands: pairs.collect(), curves, holds_ends, walker_gamma, says_ratio, notes: Vec::new() }
     }
 
-    /// Lowest and highest ratio.
     fn ends(&self) -> [f64; 2] {
         [&self.curves[0], &self.curves[self.curves.len() - 1]].map(|curve| curve.ratio)
     }
@@ -173,11 +169,8 @@ impl Table {
     /// What is to be said of one that scatters, or names no stress ratio, or others than those of the cycles, smallest and largest.
     pub fn lines(&self, ratios: [f64; 2]) -> Vec<String> {
         let unsaid = (!self.says_ratio).then(|| {
-            format!(
-                "the table of rates has no stress ratio: its rates are used at R = {} unchanged; give it in a column \
-                 stress_ratio or by growth_table = {{ file = \"...\", stress_ratio = ... }}",
-                ratios[1]
-            )
+            let remedy = "give it in a column stress_ratio or by growth_table = { file = \"...\", stress_ratio = ... }";
+            format!("the table of rates has no stress ratio: its rates are used at R = {} unchanged; {remedy}", ratios[1])
         });
         let mut lines: Vec<String> = self.notes.iter().cloned().chain(unsaid).collect();
         lines.extend(ratios.iter().filter_map(|ratio| self.beyond_ratio(*ratio)));
@@ -211,10 +204,10 @@ fn read(given: &Given<'_>) -> Result<Table> {
     if let Some([problem, _]) = table.outside(ratio).filter(|_| ratio > last && (is_one || !holds_ends)) {
         let remedy = match is_one {
             true => "give fatigue.walker_gamma (ΔK at R = K_max (1-R)^gamma), or add rates at this ratio to the table".to_owned(),
-            false => format!(
-                "add rates at this ratio to the table, or use those of R = {last} by growth_table_ends = \"held\" \
-                 (non-conservative)"
-            ),
+            false => {
+                let held = format!("use those of R = {last} by growth_table_ends = \"held\" (non-conservative)");
+                format!("add rates at this ratio to the table, or {held}")
+            }
         };
         return Err(input(KEY, format!("\"{}\"", rates.file), problem, remedy));
     }
@@ -266,14 +259,35 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
         let (band, points) = (curve.with(&curve), curve.rows.len());
         let squares: f64 = pairs.iter().map(|[k, rate]| (rate.ln() - log_rate(&band, 0.0, k.ln())).powi(2)).sum();
         let rms = (squares / count as f64).sqrt();
-        notes.push(format!(
-            "{}: rates at R = {ratio} scatter; rising curve of {points} points used, rms of {count} rates {rms:.3} in ln(da/dN)",
-            rates.file
-        ));
+        let used = format!("rising curve of {points} points used, rms of {count} rates {rms:.3} in ln(da/dN)");
+        notes.push(format!("{}: rates at R = {ratio} scatter; {used}", rates.file));
         curves.push(curve);
     }
-    if curves.is_empty() {
-        return Err(wrong(None, "rows", 0.0, "are too few".to_owned()));
-    }
+    fail_if!(curves.is_empty(), wrong(None, "rows", 0.0, "are too few".to_owned()));
     Ok((curves, notes))
+}
+
+const POINTS_MIN: usize = 3;
+
+/// ΔK and rates of a rising curve through rates by rising ΔK: medians, which outliers do not move, of as few neighbours as make it rise, and straight
+/// on from them to the ends. `None`: too few rates, or none that rises.
+fn rising(pairs: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
+    let logs: Vec<[f64; 2]> = pairs.iter().map(|pair| pair.map(f64::ln)).collect();
+    let of = |size: usize| {
+        let mut curve: Vec<[f64; 2]> = logs.chunks_exact(size).map(|some| [0, 1].map(|k| median(some, k))).collect();
+        for (end, next, place) in [(0, 1, 0), (curve.len() - 1, curve.len() - 2, logs.len() - 1)] {
+            let ([x, y], [x_next, y_next]) = (curve[end], curve[next]);
+            curve[end] = [logs[place][0], y + (logs[place][0] - x) * (y_next - y) / (x_next - x)];
+        }
+        let rises = curve.windows(2).all(|pair| pair[0][0] < pair[1][0] && pair[0][1] < pair[1][1]);
+        rises.then_some(curve)
+    };
+    let curve = (3..=logs.len() / POINTS_MIN).step_by(2).find_map(of)?;
+    Some(curve.iter().map(|pair| pair.map(f64::exp)).collect())
+}
+
+fn median(some: &[[f64; 2]], k: usize) -> f64 {
+    let mut values: Vec<f64> = some.iter().map(|pair| pair[k]).collect();
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
 }

@@ -11,14 +11,12 @@ use perilife_plate::material::Plane;
 pub type Rate = fn(&[f64], &dyn GrowthLaw, &Now, &Zone) -> f64;
 
 pub struct RetardationSpec {
-    /// Name in input and result files.
     pub name: &'static str,
     pub meaning: &'static str,
     pub constants: &'static [Constant],
     /// da/dN, m/cycle, of a cycle whose plastic zone stays within that of an overload, by the constants in SI units; `None` where nothing is
     /// retarded.
     pub rate: Option<Rate>,
-    /// What the model says of underloads.
     pub underload: &'static str,
 }
 
@@ -26,11 +24,9 @@ pub struct RetardationSpec {
 pub struct Constant {
     /// Key in `[loading]`.
     pub key: &'static str,
-    /// Unit and bounds of reason.
     pub quantity: Quantity,
     /// Value, SI, in a case that does not give it, by its plane state and the threshold ΔK_th of its law; `None`: it is refused.
     pub default: fn(Plane, Option<f64>) -> Option<f64>,
-    /// What to give where it is missing.
     pub remedy: &'static str,
 }
 
@@ -41,30 +37,24 @@ impl Constant {
     }
 }
 
-/// A cycle at a tip.
+/// A tip at maximum load: its way and plastic zone in m, K in Pa√m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Now {
-    /// Way of the tip, m.
     pub a: f64,
-    /// K at maximum load, Pa√m.
     pub k_max: f64,
     pub ratio: f64,
     /// Least stress ratio that the law knows.
     pub least: f64,
-    /// Its plastic zone, m.
     pub size: f64,
     /// K_max/(σ_Y √(πa)): its maximum over the yield strength, of a crack in a wide plate with this K (McClung 1994).
     pub stress_over_yield: f64,
 }
 
-/// The plastic zone of the last overload, which is the state of a tip.
+/// The plastic zone of the last overload, which is the state of a tip: way after it and size in m, K at its maximum in Pa√m.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Zone {
-    /// Way of the tip after the overload, m.
     pub from: f64,
-    /// Its size, m.
     pub size: f64,
-    /// K at the maximum of the overload, Pa√m.
     pub k_max: f64,
     /// Least K since then, that of the overload included, Pa√m.
     pub k_min: f64,
@@ -76,6 +66,3 @@ impl Zone {
         self.from + self.size
     }
 }
-
-pub static NONE: RetardationSpec =
-    RetardationSpec { name: "none", meaning: "no load interaction", constants: &[], rate: None, underload: "none" };

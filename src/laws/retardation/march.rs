@@ -26,9 +26,7 @@ const ALIKE: f64 = 1e-3;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marched {
-    /// The way that was asked for.
     Reached,
-    /// The cycles that were asked for.
     RunOut,
     /// A whole pass changes nothing.
     Arrested,
@@ -59,12 +57,10 @@ pub struct Underway {
     /// Way of the tip, m.
     pub a: f64,
     pub cycles: f64,
-    /// The zone of its last overload.
     pub zone: Option<Zone>,
 }
 
 impl Underway {
-    /// Before the first cycle of a spectrum.
     pub fn start(spectrum: &Spectrum) -> Self {
         let left = spectrum.cycles.first().map_or(0.0, |cycle| times(cycle, 0.0));
         Underway { passes: 0.0, place: 0, left, chunk: 1.0, period: (0.0, None, false), a: 0.0, cycles: 0.0, zone: None }
@@ -87,7 +83,6 @@ fn times(cycle: &Cycle, passes: f64) -> f64 {
     if cycle.count.fract() == 0.0 { cycle.count } else { so_far(passes + 1.0) - so_far(passes) }
 }
 
-/// A tip on its way through a spectrum.
 pub struct March<'a> {
     laws: Laws<'a>,
     spectrum: &'a Spectrum,
@@ -95,7 +90,6 @@ pub struct March<'a> {
     per_period: f64,
     /// Least stress ratio that the law knows.
     least: f64,
-    /// How its K follows the load.
     pub response: Response,
     /// Crack length where its way is 0, m.
     pub start: f64,
@@ -140,7 +134,6 @@ impl<'a> March<'a> {
         Marched::Reached
     }
 
-    /// The cycle at the tip, with what it does there.
     fn now(&self, cycle: &Cycle, a: f64, k: f64) -> Now {
         let [largest, smallest] = self.response.cycle([cycle.max, cycle.min]);
         let k_max = largest * k;

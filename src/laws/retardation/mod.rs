@@ -4,12 +4,9 @@
 //! `loading.retardation`; the first one whose zone reaches its end makes a zone of its own. Zones are `(K_max/σ_Y)²/2π` in plane stress and a third of
 //! it in plane strain (Irwin 1960).
 
-mod closure;
 mod description;
 mod march;
-mod newman;
-mod wheeler;
-mod willenborg;
+mod models;
 
 pub use description::{Constant, Now, RetardationSpec, Zone};
 pub use march::{Laws, March, Marched, Underway, between};
@@ -24,11 +21,10 @@ use perilife_base::keys::{Field, Given, Key, quantity};
 use perilife_plate::loading::Loading;
 use perilife_plate::material::{Material, Plane};
 
-/// Every model, in the order of `perilife list`. A new one is a line here and its file.
-const MODELS: &[&RetardationSpec] = &[&description::NONE, &wheeler::MODEL, &willenborg::MODEL, &closure::MODEL, &newman::MODEL];
+/// Every model, in the order of `perilife list`. A new one is a line here and in `models`.
+const MODELS: &[&RetardationSpec] = &[&models::NONE, &models::WHEELER, &models::WILLENBORG, &models::CLOSURE, &models::NEWMAN];
 
 perilife_base::kinds! {
-    /// Which model of retardation a case has.
     pub struct RetardationKind of RetardationSpec in MODELS for "loading.retardation"
 }
 
@@ -50,7 +46,6 @@ pub fn keys_to_tell() -> Vec<Key> {
     keys
 }
 
-/// A model with its constants.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Retardation {
     pub kind: RetardationKind,
@@ -58,7 +53,6 @@ pub struct Retardation {
     pub constants: Vec<f64>,
     /// Yield strength, Pa.
     pub strength: f64,
-    /// Which plastic zone a tip has.
     pub plane: Plane,
 }
 
@@ -79,7 +73,7 @@ impl Retardation {
             return given.refuse_any(&retardation_keys(), problem, "set kind = \"spectrum\", or remove it").map(|()| None);
         }
         let asked = given(KEY).map(|value| RetardationKind::take(&Key::new(KEY, ""), RetardationKind::KEY, value)).transpose()?;
-        let kind = asked.unwrap_or(RetardationKind(&description::NONE));
+        let kind = asked.unwrap_or(RetardationKind(&models::NONE));
         if kind.0.rate.is_none() {
             // Constants stay where a model is turned off.
             return Ok(None);

@@ -10,21 +10,18 @@ use super::{Input, LoadingKind, PLACES, forces, grips};
 use crate::specimen::geometry::{bounding_box, distance, unit};
 use crate::specimen::pin::SNUG_PIN;
 use crate::specimen::{Bearing, Component, Edge, Load, LoadMeasure, Point, Specimen, Support};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::{Quantity, number, number_of, shorten, table_of};
 use perilife_base::keys::{Given, key, section};
 use perilife_base::units::{MM, place_mm, round_mm};
 
-/// Key of bending in the plane.
 const BENT: &str = "edge_bending_ratio";
-
 /// Resultant of pins that pull against each other, over the sum of their forces.
 const BALANCED: f64 = 1e-6;
 /// Resultant of loads over the largest of them, and its moment over that times the plate, up to which they are in balance.
 const LEVEL: f64 = 1e-4;
 
 perilife_base::keys! {
-    /// One side of `[supports]`.
     #[derive(Debug)]
     pub struct SupportEntry {
         depth: f64 = key("rows_mm", "Depth of the support: from the side into the plate").of(DEPTH), or "one row" 0.0;
@@ -56,7 +53,6 @@ fn fit_unknown_pins(specimen: &mut Specimen) {
     }
 }
 
-/// Puts loads and supports on the specimen, as [`apply`].
 fn apply_loads(given: &Given<'_>, input: &Input, supports: Option<&Value>, specimen: &mut Specimen) -> Result<f64> {
     if specimen.kind.is_plate() {
         return apply_to_plate(given, input, supports, specimen);
@@ -70,9 +66,7 @@ fn apply_loads(given: &Given<'_>, input: &Input, supports: Option<&Value>, speci
     }
     let remedy = "remove it, or use kind = \"plate\"";
     given.refuse_any(&[&PLACES[..], &[BENT]].concat(), &problem, remedy)?;
-    if supports.is_some() {
-        return Err(input_missing("supports", problem, remedy));
-    }
+    fail_if!(supports.is_some(), input_missing("supports", problem, remedy));
     let parallel_ratio = input.parallel_ratio;
     if parallel_ratio != 0.0 {
         if specimen.load_measure == LoadMeasure::Force {
@@ -127,10 +121,8 @@ fn apply_to_plate(given: &Given<'_>, input_: &Input, supports: Option<&Value>, s
             specimen.load_measure = LoadMeasure::Force;
             forces::read_pins(given, input_.pins.as_deref().unwrap_or_default(), false, specimen)?;
             forces::read_rollers(input_.rollers.as_deref().unwrap_or_default(), specimen)?;
-            if specimen.loads.is_empty() {
-                let remedy = "give pins { hole = 0, direction = [0, 1] } or rollers { at_mm = [0, 40], contact_width_mm = 6 }";
-                return Err(input(key, "[]", "applies no load", remedy));
-            }
+            let remedy = "give pins { hole = 0, direction = [0, 1] } or rollers { at_mm = [0, 40], contact_width_mm = 6 }";
+            fail_if!(specimen.loads.is_empty(), input(key, "[]", "applies no load", remedy));
             1.0
         }
         None => load_edges(given, input_, &held, specimen)?,
@@ -187,10 +179,9 @@ fn keep_own_loads(given: &Given<'_>, supports: Option<&Value>, specimen: &mut Sp
     read_supports(supports, specimen)?;
     let problem = format!("applies only to loaded edges, and the load is that of the forces of {}", specimen.kind);
     given.refuse_any(&[BENT], &problem, "remove it, or give edges")?;
-    if parallel_ratio != 0.0 {
-        let problem = format!("cannot be combined with the forces of {}", specimen.kind);
-        return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "remove it, or give edges"));
-    }
+    let problem = || format!("cannot be combined with the forces of {}", specimen.kind);
+    let remedy = "remove it, or give edges";
+    fail_if!(parallel_ratio != 0.0, input("loading.stress_parallel_ratio", parallel_ratio, problem(), remedy));
     check_balance(specimen, "supports")?;
     Ok(1.0)
 }
@@ -204,20 +195,14 @@ pub(super) fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -
         let known = "known sides: top, bottom, left, right";
         let edge: Edge = name.parse().map_err(|_| input(&path, shorten(value), "is not a side of the plate", known))?;
         let SupportEntry { depth, fix } = section(value, &path)?;
-        if fix.is_empty() {
-            return Err(input(&format!("{path}.fix"), "[]", "supports nothing", "give fix = [\"x\", \"y\"], [\"x\"] or [\"y\"]"));
-        }
+        let remedy = "give fix = [\"x\", \"y\"], [\"x\"] or [\"y\"]";
+        fail_if!(fix.is_empty(), input(&format!("{path}.fix"), "[]", "supports nothing", remedy));
         let [low, high] = bounding_box(&specimen.outline);
         let (x, y) = (fix.contains(&Component::X), fix.contains(&Component::Y));
         let along_normal = if edge.normal()[0] == 0.0 { (y, high[1] - low[1]) } else { (x, high[0] - low[0]) };
-        if depth >= along_normal.1 / 2.0 {
-            return Err(input(
-                &format!("{path}.rows_mm"),
-                round_mm(depth),
-                "supports half of the plate or more",
-                "reduce the depth",
-            ));
-        }
+        let remedy = "reduce the depth";
+        let problem = "supports half of the plate or more";
+        fail_if!(depth >= along_normal.1 / 2.0, input(&format!("{path}.rows_mm"), round_mm(depth), problem, remedy));
         let stretches = stretches(edge, specimen, &path)?;
         specimen.supports.extend(stretches.into_iter().map(|(from, to)| Support::Fixed { from, to, depth, x, y }));
         if along_normal.0 {
@@ -229,10 +214,8 @@ pub(super) fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -
 
 fn stretches(edge: Edge, specimen: &Specimen, key: &str) -> Result<Vec<(Point, Point)>> {
     let found = edge.stretches(specimen);
-    if found.is_empty() {
-        let remedy = "only sides on the bounding box are edges";
-        return Err(input(key, edge, "is not a straight side of this outline", remedy));
-    }
+    let remedy = "only sides on the bounding box are edges";
+    fail_if!(found.is_empty(), input(key, edge, "is not a straight side of this outline", remedy));
     if let Some((from, to)) = edge.step(specimen) {
         let problem = format!("has a step smaller than 1e-4 of the plate from {} to {}", place_mm(from), place_mm(to));
         return Err(input(key, edge, problem, "draw the side as one line, or make the step deeper"));
@@ -249,20 +232,17 @@ fn load_edges(given: &Given<'_>, input_: &Input, held: &[Edge], specimen: &mut S
     let loaded: Vec<Edge> = match asked {
         None => [Edge::Top, Edge::Bottom].into_iter().filter(|edge| !held.contains(edge)).collect(),
         Some(asked) => {
-            if let Some(edge) = asked.iter().find(|edge| held.contains(edge)) {
-                let remedy = "load another side, or remove this support";
-                return Err(input(KEY, edge, "is supported by [supports] and cannot be loaded", remedy));
-            }
+            let problem = "is supported by [supports] and cannot be loaded";
+            let remedy = "load another side, or remove this support";
+            fail_if!(let Some(edge) = asked.iter().find(|edge| held.contains(edge)), input(KEY, edge, problem, remedy));
             if let Some((i, edge)) = asked.iter().enumerate().find(|(i, edge)| asked[..*i].contains(edge)) {
                 return Err(input(&format!("{KEY}[{i}]"), edge, "is repeated", "name each side once"));
             }
             asked.to_vec()
         }
     };
-    let Some(first) = loaded.first().copied() else {
-        let remedy = "name the loaded sides, for example [\"top\", \"bottom\"]";
-        return Err(input_missing(KEY, "is empty: nothing is loaded", remedy));
-    };
+    let remedy = "name the loaded sides, for example [\"top\", \"bottom\"]";
+    let first = loaded.first().copied().ok_or_else(|| input_missing(KEY, "is empty: nothing is loaded", remedy))?;
     let mut areas = Vec::new();
     for edge in &loaded {
         let length: f64 = stretches(*edge, specimen, KEY)?.iter().map(|(from, to)| distance(*from, *to)).sum();
@@ -279,10 +259,9 @@ fn load_edges(given: &Given<'_>, input_: &Input, held: &[Edge], specimen: &mut S
                 "cannot be combined with loading.direction: bending acts along the normal",
                 "remove one of them",
             )?;
-            if parallel_ratio != 0.0 {
-                let problem = "cannot be combined with loading.direction";
-                return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "name all loaded sides in edges"));
-            }
+            let problem = "cannot be combined with loading.direction";
+            let remedy = "name all loaded sides in edges";
+            fail_if!(parallel_ratio != 0.0, input("loading.stress_parallel_ratio", parallel_ratio, problem, remedy));
             for (edge, traction) in loaded.iter().zip(directions(asked, &loaded)?) {
                 let loads = edge.stretches(specimen).into_iter().map(|(from, to)| Load::Edge { from, to, traction });
                 specimen.loads.extend(loads.collect::<Vec<_>>());
@@ -318,9 +297,7 @@ fn directions(given: &Value, loaded: &[Edge]) -> Result<Vec<Point>> {
         (None, Some(list)) => list.iter().map(pair).collect::<Option<_>>().ok_or_else(|| wrong("is not a direction".into()))?,
         (None, None) => return Err(wrong("is not a direction".into())),
     };
-    if vectors.len() != loaded.len() {
-        return Err(wrong(format!("has {} directions for {} sides", vectors.len(), loaded.len())));
-    }
+    fail_if!(vectors.len() != loaded.len(), wrong(format!("has {} directions for {} sides", vectors.len(), loaded.len())));
     vectors.into_iter().map(unit).collect::<Option<_>>().ok_or_else(|| wrong("has no direction".into()))
 }
 
@@ -333,10 +310,9 @@ fn read_edge_bending(all: &Given<'_>, input_: &Input, loaded: &[Edge]) -> Result
         let problem = "needs one side or two opposite sides";
         return Err(input(KEY, shorten(given), problem, "name one side or two opposite ones in loading.edges"));
     }
-    if input_.kind == LoadingKind::Displacement {
-        let problem = "applies only to a stress on edges, and these are moved by a displacement";
-        return Err(input(KEY, shorten(given), problem, "remove it, or give cycles of a load"));
-    }
+    let problem = "applies only to a stress on edges, and these are moved by a displacement";
+    let remedy = "remove it, or give cycles of a load";
+    fail_if!(input_.kind == LoadingKind::Displacement, input(KEY, shorten(given), problem, remedy));
     if given.as_str() == Some("pure") {
         const FORCES: [&str; 4] = ["force_max_n", "force_range_n", "force_max_kn", "force_range_kn"];
         all.refuse_any(&FORCES, "is zero in pure bending", "give loading.stress_max_mpa, that at the end of the edge")?;
@@ -388,16 +364,14 @@ fn check_balance(specimen: &Specimen, key: &str) -> Result<()> {
     turned |= specimen.supports.len() > 1;
     let Imbalance { force, moment } = imbalance(specimen);
     for (i, axis) in ["x", "y"].iter().enumerate() {
-        if !held[i] && force[i] {
-            let problem = format!("not in equilibrium: unbalanced force along {axis}");
-            return Err(input_missing(key, problem, "load opposite sides equally, or add a support in [supports]"));
-        }
+        let problem = || format!("not in equilibrium: unbalanced force along {axis}");
+        let remedy = "load opposite sides equally, or add a support in [supports]";
+        fail_if!(!held[i] && force[i], input_missing(key, problem(), remedy));
     }
     // A force held along one axis only is taken up on a line somewhere: its moment is then not asked for.
-    if !turned && !held[0] && !held[1] && moment {
-        let problem = "not in equilibrium: unbalanced moment";
-        return Err(input_missing(key, problem, "align opposite forces, or add a support in [supports]"));
-    }
+    let problem = "not in equilibrium: unbalanced moment";
+    let remedy = "align opposite forces, or add a support in [supports]";
+    fail_if!(!turned && !held[0] && !held[1] && moment, input_missing(key, problem, remedy));
     Ok(())
 }
 

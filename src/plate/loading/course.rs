@@ -18,7 +18,6 @@ const CORNER: f64 = 0.01;
 /// How large a load is, in the unit of its key.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Size {
-    /// The same in all cycles.
     One(f64),
     /// Crack length, mm, and load.
     Rows(Vec<[f64; 2]>),

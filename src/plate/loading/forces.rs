@@ -5,18 +5,16 @@ use toml::Table;
 use crate::specimen::geometry::{along, distance, distance_to_segment, unit};
 use crate::specimen::pin::{ARC, POISSON, POISSON_RATIO, PinKeys, YOUNGS_MODULUS};
 use crate::specimen::{Bearing, Load, Point, Specimen};
-use perilife_base::error::{Result, input};
+use perilife_base::error::{Result, fail_if, input};
 use perilife_base::input::{Quantity, number as plain};
 use perilife_base::keys::{Given, coordinate, key, length, modulus, number};
 use perilife_base::units::round_mm;
 
 pub(super) const KEYS: [&str; 2] = ["loading.pins", "loading.rollers"];
-
 /// Distance from the outline below which a place lies on it, m.
 const ON_OUTLINE: f64 = 1e-6;
 
 perilife_base::keys! {
-    /// One entry of `pins`.
     #[derive(Debug)]
     pub struct PinEntry {
         hole: usize = key("hole", "Hole: counted from 0 in specimen.holes");
@@ -29,9 +27,6 @@ perilife_base::keys! {
         youngs_modulus: f64 = modulus("pin_youngs_modulus_gpa", "Young's modulus of the pin"), or "210 (steel)" YOUNGS_MODULUS;
         poisson_ratio: f64 = number("pin_poisson_ratio", "Poisson's ratio of the pin", POISSON, 0.0, 0.499), or "0.3 (steel)" POISSON_RATIO;
     }
-}
-perilife_base::keys! {
-    /// One entry of `rollers`.
     #[derive(Debug)]
     pub struct RollerEntry {
         at: Point = coordinate("at_mm", "Contact center: [x, y] on the outline");
@@ -50,10 +45,9 @@ pub(super) fn read_pins(given: &Given<'_>, pins: &[PinEntry], beside_edges: bool
         let empty = Table::new();
         let entry = given.table.get("pins").and_then(|pins| pins.get(i)?.as_table());
         let entry = Given { table: entry.unwrap_or(&empty), path: &path };
-        if pin.hole >= specimen.holes.len() {
-            let problem = format!("is not a hole of this plate, which has {}", specimen.holes.len());
-            return Err(input(&format!("{path}.hole"), pin.hole, problem, "count specimen.holes from 0"));
-        }
+        let problem = || format!("is not a hole of this plate, which has {}", specimen.holes.len());
+        let remedy = "count specimen.holes from 0";
+        fail_if!(pin.hole >= specimen.holes.len(), input(&format!("{path}.hole"), pin.hole, problem(), remedy));
         let force = force_of(&path, pin, beside_edges, specimen)?;
         let direction = direction_of(&path, pin.direction)?;
         let &PinEntry { half_angle, diameter, friction, youngs_modulus, poisson_ratio, .. } = pin;
@@ -75,12 +69,8 @@ fn force_of(path: &str, pin: &PinEntry, beside_edges: bool, specimen: &Specimen)
         }
         (true, _, Some(share)) => {
             let problem = "is a share of a force; with loaded edges the nominal load is a stress";
-            Err(input(
-                &format!("{path}.share"),
-                share,
-                problem,
-                "give bearing_ratio = P / (d h) over the stress of the first edge",
-            ))
+            let remedy = "give bearing_ratio = P / (d h) over the stress of the first edge";
+            Err(input(&format!("{path}.share"), share, problem, remedy))
         }
         (true, None, None) => {
             let remedy = "give P / (d h) of the pin over the stress of the first edge of loading.edges";
@@ -122,13 +112,10 @@ pub(super) fn read_rollers(rollers: &[RollerEntry], specimen: &mut Specimen) -> 
 }
 
 fn check_count(key: &str, given: usize, example: &str) -> Result<()> {
-    if given > 100 {
-        return Err(input(key, format!("{given} entries"), "are too many", format!("give up to 100 {example}")));
-    }
+    fail_if!(given > 100, input(key, format!("{given} entries"), "are too many", format!("give up to 100 {example}")));
     Ok(())
 }
 
-/// Direction of a force, of length 1.
 fn direction_of(path: &str, given: [f64; 2]) -> Result<Point> {
     unit(given).ok_or_else(|| {
         let remedy = "give [x, y] of the force on the plate, for example [0, 1]";

@@ -3,7 +3,8 @@
 //! Rules of written mathematics: `-x^2` is -(x²), `a^b^c` is a^(b^c), `1/2` is a half. (Crates that read formulas bind the minus before
 //! the power, or divide whole numbers without remainder; either would turn a stress into another one without a word.)
 
-/// A function of one number, or of two.
+use perilife_base::error::fail_if;
+
 #[derive(Debug, Clone, Copy)]
 enum Function {
     One(fn(f64) -> f64),
@@ -26,12 +27,9 @@ const FUNCTIONS: &[(&str, Function)] = &[
     ("max", Function::Two(f64::max)),
 ];
 
-/// What a formula is made of.
 pub const KNOWN: &str = "numbers, x, y, pi, + - * / ^, brackets, sin cos tan atan sinh cosh tanh exp ln sqrt abs min max";
-/// Brackets and signs within each other at the most.
 const DEPTH_MOST: usize = 100;
 
-/// A step of the evaluation on a stack of numbers.
 #[derive(Debug, Clone)]
 enum Step {
     Number(f64),
@@ -43,7 +41,6 @@ enum Step {
     Two(fn(f64, f64) -> f64),
 }
 
-/// A formula, read.
 #[derive(Debug, Clone)]
 pub struct Formula(Vec<Step>);
 
@@ -157,9 +154,7 @@ impl Reader<'_> {
 
     fn signed(&mut self) -> Result<(), String> {
         self.depth += 1;
-        if self.depth > DEPTH_MOST {
-            return Err(self.wrong("is nested too deeply"));
-        }
+        fail_if!(self.depth > DEPTH_MOST, self.wrong("is nested too deeply"));
         if self.take(b'-') {
             self.signed()?;
             self.steps.push(Step::One(|a| -a));
@@ -248,7 +243,6 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The values in brackets behind a name of the caller.
     fn values(&mut self, name: String) -> Result<(), String> {
         let mut count = 0;
         if self.take(b'(') {

@@ -10,8 +10,7 @@ pub mod pieces;
 pub mod residual;
 pub mod spectrum;
 
-pub use boundary::{DEPTH, SupportEntry};
-pub use boundary::{Imbalance, imbalance};
+pub use boundary::{DEPTH, Imbalance, SupportEntry, imbalance};
 pub use course::LoadCourse;
 pub use read::{from_values, mistakes};
 
@@ -23,7 +22,7 @@ use crate::specimen::Edge;
 use course::Size;
 use forces::{PinEntry, RollerEntry};
 use perilife_base::input::{Quantity, number as plain};
-use perilife_base::keys::{Key, Plain, force, force_kn, key, number, stress};
+use perilife_base::keys::{Key, Plain, Unjudged, force, force_kn, key, number, stress};
 use perilife_base::units::MM;
 use residual::ResidualStress;
 use spectrum::{Class, Spectrum, SpectrumFormat};
@@ -32,23 +31,18 @@ use spectrum::{Class, Spectrum, SpectrumFormat};
 pub const SAME_RATIO: f64 = 0.02;
 
 perilife_base::kinds! {
-    /// Load histories.
     pub enum LoadingKind for "loading.kind" {
         ConstantAmplitude = "constant_amplitude": "sinusoidal or triangular cycles of one range and one stress ratio",
         Spectrum = "spectrum": "variable-amplitude cycles from a file, in sequence, repeated",
         Displacement = "displacement": "constant displacement range; the load drops as the crack grows",
     }
-}
 
-perilife_base::kinds! {
     /// What cycles of a displacement do with the edges that they move.
     pub enum Grip for "loading.grip" {
         Straight = "straight": "rigid grip: the edge stays straight and does not rotate; its stress is not uniform",
         Mean = "mean": "uniform edge stress; the edge may bend and rotate; displacement = edge mean",
     }
-}
 
-perilife_base::kinds! {
     /// What is moved does across the direction of its motion.
     pub enum Transverse for "loading.transverse" {
         Free = "free": "driven points and straight edges move freely normal to the displacement or velocity",
@@ -62,8 +56,6 @@ const OF_DISPLACEMENT: (&str, &[&str]) = ("kind", &["displacement"]);
 const RESIDUAL: &str = "the residual stress";
 const FORMULA: &str = "give a formula in quotes, of numbers, x, y, pi, + - * / ^, brackets and functions";
 const DISPLACEMENT: Quantity = Quantity { what: "a displacement", unit: "mm", low: 1e-9, high: 1e4, si: MM };
-/// One below zero gets the remedy of compression, not that of a wrong number.
-const SIGNED: Quantity = Quantity { low: -1e4, ..DISPLACEMENT };
 
 perilife_base::keys! {
     /// Keys of `[loading]` but those of retardation.
@@ -75,8 +67,8 @@ perilife_base::keys! {
         force_range_n: Option<Size> = force("force_range_n", "Force range ΔP: maximum − minimum").group(LOAD);
         force_max_kn: Option<Size> = force_kn("force_max_kn", "Maximum force Pmax").group(LOAD);
         force_range_kn: Option<Size> = force_kn("force_range_kn", "Force range ΔP: maximum − minimum").group(LOAD);
-        displacement_max_mm: Option<Plain> = of_kind(key("displacement_max_mm", "Maximum displacement δ_max: relative, of the loaded sides").of(SIGNED).group(LOAD), OF_DISPLACEMENT);
-        displacement_range_mm: Option<Plain> = of_kind(key("displacement_range_mm", "Displacement range Δδ: relative, of the loaded sides").of(SIGNED).group(LOAD), OF_DISPLACEMENT);
+        displacement_max_mm: Option<Unjudged> = of_kind(key("displacement_max_mm", "Maximum displacement δ_max: relative, of the loaded sides").of(DISPLACEMENT).group(LOAD), OF_DISPLACEMENT);
+        displacement_range_mm: Option<Unjudged> = of_kind(key("displacement_range_mm", "Displacement range Δδ: relative, of the loaded sides").of(DISPLACEMENT).group(LOAD), OF_DISPLACEMENT);
         spectrum_scale_mpa: Option<Plain> = of_kind(stress("spectrum_scale_mpa", "Scale of the spectrum: gross stress of the value 1").group(LOAD), OF_SPECTRUM);
         spectrum_scale_n: Option<Plain> = of_kind(force("spectrum_scale_n", "Scale of the spectrum: force of the value 1").group(LOAD), OF_SPECTRUM);
         stress_ratio: Option<f64> = key("stress_ratio", "Stress ratio R: minimum / maximum, below 1").of(RATIO);
@@ -110,10 +102,8 @@ const fn of_kind(key: Key, (of, with): (&'static str, &'static [&'static str])) 
     key.only(of, with)
 }
 
-/// Keys that say where the load acts.
 const PLACES: [&str; 4] = ["edges", "direction", "pins", "rollers"];
 
-/// What every cycle repeats.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LoadControl {
     Load,
@@ -136,7 +126,6 @@ pub struct Loading {
     /// solved under [`UNIT_STRESS`] or [`UNIT_FORCE`] and scaled ([`Loading::share`]), as is a load that follows the crack, of which this is the one at the initial crack
     /// length.
     pub maximum: f64,
-    /// What every cycle repeats.
     pub control: LoadControl,
     /// Stress ratio R = minimum / maximum, below 1; of a spectrum that of its largest cycle.
     pub ratio: f64,
@@ -159,7 +148,6 @@ pub const UNIT_FORCE: f64 = perilife_base::units::KN;
 impl Loading {
     /// Load of the cycle over [`Loading::maximum`], on a plate with this crack length, m, on which the latter does this work `Σ f·u`, J: `δ_max / δ` where
     /// a displacement is repeated.
-    #[inline]
     pub fn share(&self, work: f64, crack_length: f64) -> f64 {
         match &self.control {
             LoadControl::Load => 1.0,
@@ -187,7 +175,6 @@ impl Loading {
     }
 
     /// Smallest and largest stress ratio of the cycles that open the crack.
-    #[inline]
     pub fn ratios(&self) -> [f64; 2] {
         self.spectrum.as_ref().map_or([self.ratio; 2], |spectrum| spectrum.ratios)
     }
@@ -214,7 +201,6 @@ impl Loading {
     }
 
     /// Largest displacement of a cycle, m, where that is what is repeated.
-    #[inline]
     pub fn displacement(&self) -> Option<f64> {
         match self.control {
             LoadControl::Displacement { maximum, .. } => Some(maximum),
@@ -224,7 +210,6 @@ impl Loading {
 
     /// Share of the maximum that counts as range, `1 - max(R, 0)`: a closed crack does not open under compression
     /// (theory: closure assumption for negative R).
-    #[inline]
     pub fn range_share(&self) -> f64 {
         1.0 - self.ratio.max(0.0)
     }

@@ -5,7 +5,6 @@ use crate::specimen::geometry::{along, distance};
 use crate::specimen::pin::{Contact, LOOSE_PIN, Pin, RimForce};
 use crate::specimen::{Bearing, Hole, Load, Point, Specimen};
 
-/// A piece of the rim and the force on it.
 #[derive(Debug, Clone, Copy)]
 pub struct LoadPiece {
     /// Where it acts; the normal points out of the material.
@@ -19,12 +18,10 @@ pub fn outward(specimen: &Specimen, facet: Facet, spacing: f64) -> Facet {
     if specimen.contains(behind(&facet, spacing)) { facet } else { turned_over(facet) }
 }
 
-/// The loads of a specimen in short pieces.
 pub fn load_pieces(specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
     specimen.loads.iter().flat_map(|load| pieces_of(load, specimen, spacing)).collect()
 }
 
-/// A load of a specimen in short pieces.
 pub fn pieces_of(load: &Load, specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
     if let Some((from, to, [first, last])) = load.on_edge() {
         let piece = |facet: Facet| {

@@ -7,15 +7,15 @@ use toml::Value;
 use super::course::{LoadCourse, Size};
 use super::residual::ResidualStress;
 use super::spectrum::Spectrum;
-use super::{DISPLACEMENT, Input, LoadControl, Loading, LoadingKind, OF_SPECTRUM, PLACES, UNIT_FORCE, UNIT_STRESS};
-use super::{boundary, grips};
+use super::{
+    DISPLACEMENT, Input, LoadControl, Loading, LoadingKind, OF_SPECTRUM, PLACES, UNIT_FORCE, UNIT_STRESS, boundary, grips,
+};
 use crate::specimen::{LengthConvention, LoadMeasure, Specimen};
-use perilife_base::error::{self, Error, InputError, Result, input, input_missing};
+use perilife_base::error::{self, Error, InputError, Result, fail_if, input, input_missing};
 use perilife_base::input::{FORCE, FORCE_KN, Folder, Quantity, STRESS};
-use perilife_base::keys::{Given, Plain, Section};
+use perilife_base::keys::{Given, Plain, Section, Unjudged};
 use perilife_base::units::MPA;
 
-/// Keys that ask for a load history.
 const SEQUENCES: &[&str] = &["sequence", "sequences", "blocks", "spectrum", "history", "rainflow", "overloads"];
 
 /// Keys that do not say whether they mean maximum or range.
@@ -34,7 +34,6 @@ const BARE: &[&str] = &[
 ];
 
 const MAGNITUDES: &str = "stress_max_mpa, stress_range_mpa, force_max_n, force_range_n, force_max_kn, force_range_kn";
-
 const SCALES: &str = "spectrum_scale_mpa, spectrum_scale_n";
 const DISPLACEMENTS: &str = "displacement_max_mm, displacement_range_mm";
 
@@ -160,13 +159,9 @@ fn read_crack_pressure(input: &Input, specimen: &Specimen) -> Result<Option<f64>
     const KEY: &str = "loading.crack_pressure_mpa";
     let Some(pressure) = input.crack_pressure else { return Ok(None) };
     let given = pressure / MPA;
-    if !specimen.kind.is_plate() {
-        let problem = format!("cannot be combined with {}, whose handbook K includes its own load only", specimen.kind);
-        return Err(error::input(KEY, given, problem, "use kind = \"plate\""));
-    }
-    if specimen.cracks.is_empty() {
-        return Err(error::input(KEY, given, "requires a crack", "give specimen.cracks"));
-    }
+    let problem = || format!("cannot be combined with {}, whose handbook K includes its own load only", specimen.kind);
+    fail_if!(!specimen.kind.is_plate(), error::input(KEY, given, problem(), "use kind = \"plate\""));
+    fail_if!(specimen.cracks.is_empty(), error::input(KEY, given, "requires a crack", "give specimen.cracks"));
     Ok(Some(pressure))
 }
 
@@ -233,9 +228,10 @@ fn read_ratio(ratio: Option<f64>) -> Result<f64> {
 }
 
 impl Input {
-    /// Keys of a load with what is given.
     fn magnitudes(&self) -> impl Iterator<Item = (&'static str, Option<Size>, Quantity, Of)> {
-        let plain = |given: Option<Plain>| given.map(|given| Size::One(given.0));
+        let scale = |given: Option<Plain>| given.map(|given| Size::One(given.0));
+        // One below zero gets the remedy of compression, not that of a wrong number.
+        let displacement = |given: Option<Unjudged>| given.map(|given| Size::One(given.0));
         [
             ("stress_max_mpa", self.stress_max_mpa.clone(), STRESS, Of::Stress),
             ("stress_range_mpa", self.stress_range_mpa.clone(), STRESS, Of::Stress),
@@ -243,10 +239,10 @@ impl Input {
             ("force_range_n", self.force_range_n.clone(), FORCE, Of::Force),
             ("force_max_kn", self.force_max_kn.clone(), FORCE_KN, Of::Force),
             ("force_range_kn", self.force_range_kn.clone(), FORCE_KN, Of::Force),
-            ("spectrum_scale_mpa", plain(self.spectrum_scale_mpa), STRESS, Of::Stress),
-            ("spectrum_scale_n", plain(self.spectrum_scale_n), FORCE, Of::Force),
-            ("displacement_max_mm", plain(self.displacement_max_mm), DISPLACEMENT, Of::Displacement),
-            ("displacement_range_mm", plain(self.displacement_range_mm), DISPLACEMENT, Of::Displacement),
+            ("spectrum_scale_mpa", scale(self.spectrum_scale_mpa), STRESS, Of::Stress),
+            ("spectrum_scale_n", scale(self.spectrum_scale_n), FORCE, Of::Force),
+            ("displacement_max_mm", displacement(self.displacement_max_mm), DISPLACEMENT, Of::Displacement),
+            ("displacement_range_mm", displacement(self.displacement_range_mm), DISPLACEMENT, Of::Displacement),
         ]
         .into_iter()
     }
@@ -259,7 +255,6 @@ enum Of {
     Displacement,
 }
 
-/// The one load magnitude of the file.
 struct Magnitude {
     key: String,
     /// As given, in the unit of its key.
@@ -282,9 +277,7 @@ impl Magnitude {
         let remedy = format!("give exactly one of {wanted}");
         // A second one has been refused.
         let mut given = slice.magnitudes().filter_map(|(key, value, quantity, of)| Some((key, value?, quantity, of)));
-        let Some((key, given, quantity, of)) = given.next() else {
-            return Err(input_missing(example, "no load given", remedy));
-        };
+        let (key, given, quantity, of) = given.next().ok_or_else(|| input_missing(example, "no load given", &remedy))?;
         let path = format!("loading.{key}");
         if !wanted.split(", ").any(|known| known == key) {
             return Err(input(&path, given, format!("cannot be combined with kind = \"{kind}\""), remedy));

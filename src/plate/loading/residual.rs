@@ -17,7 +17,7 @@ use super::Input;
 use super::formula::{Formula, KNOWN};
 use crate::specimen::geometry::{along, distance};
 use crate::specimen::{CrackLine, Point};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::{Folder, shorten};
 use perilife_base::table::names::{Kind, Named, Role};
 use perilife_base::table::quantities::{Words, in_si, numbers};
@@ -35,11 +35,8 @@ const FORMULAS: [Key; 3] = [
 ];
 /// Distance from a line over its length within which points lie on it, and beyond its ends within which they are at its end.
 const ROUND_OFF: f64 = 1e-6;
-/// Pieces of the initial cracks whose ends are looked at.
 const LOOKED_AT: usize = 40;
-/// Largest stress, MPa.
 const MOST: f64 = 1e5;
-
 /// σ_x, σ_y, τ_xy, Pa.
 pub type Components = [f64; 3];
 
@@ -48,13 +45,10 @@ pub fn across([xx, yy, xy]: Components, [x, y]: Point) -> Point {
     [xx * x + xy * y, xy * x + yy * y]
 }
 
-/// Residual stress over a plate.
 #[derive(Clone)]
 pub struct ResidualStress {
     field: Field,
-    /// Formulas, or the file.
     words: String,
-    /// Hash of the file.
     sha256: String,
     key: &'static str,
 }
@@ -81,7 +75,6 @@ enum Field {
     Plane(Box<DelaunayTriangulation<Sample>>),
 }
 
-/// A point of a file.
 #[derive(Debug, Clone, Copy)]
 struct Sample {
     at: Point,
@@ -118,7 +111,6 @@ impl ResidualStress {
         self.key
     }
 
-    /// Formula or file in words.
     pub fn words(&self) -> &str {
         &self.words
     }
@@ -223,9 +215,7 @@ fn of_formulas((own, units): Key, given: &Value) -> Result<ResidualStress> {
         }
         other => return Err(input(own, shorten(other), "is not a formula", REMEDY)),
     };
-    if field.iter().all(Option::is_none) {
-        return Err(input_missing(own, "gives no component", REMEDY));
-    }
+    fail_if!(field.iter().all(Option::is_none), input_missing(own, "gives no component", REMEDY));
     Ok(ResidualStress { field: Field::Formulas(field, units), words: given.to_string(), sha256: String::new(), key: own })
 }
 
@@ -237,7 +227,6 @@ const WORDS: Words = Words {
     remedy: "name the columns x_mm, y_mm, stress_mpa (or x_in, y_in, stress_ksi), and stress_x_mpa, shear_xy_mpa if available",
 };
 
-/// Rows of places and stresses below a header.
 fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
     let table = table::read(bytes, file, &WORDS)?;
     let roles = WORDS.roles(&table)?;
@@ -267,9 +256,7 @@ fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
     let from = farthest(first.at);
     let to = farthest(from);
     let length = distance(from, to);
-    if length <= 0.0 {
-        return Err(fault(Some(samples[1].0), "x", "", "repeats the previous point", "give each point once"));
-    }
+    fail_if!(length <= 0.0, fault(Some(samples[1].0), "x", "", "repeats the previous point", "give each point once"));
     let beside = |at: Point| ((to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0])).abs() / length;
     let same = |line: usize| fault(Some(line), "x", "", "repeats the point of another row", "give each point once");
     if samples.iter().all(|(_, sample)| beside(sample.at) < ROUND_OFF * length) {
@@ -287,9 +274,7 @@ fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
         triangles
             .insert(sample)
             .map_err(|error| fault(Some(line), "x", "", &format!("is not a position: {error}"), "check its unit"))?;
-        if triangles.num_vertices() == before {
-            return Err(same(line));
-        }
+        fail_if!(triangles.num_vertices() == before, same(line));
     }
     Ok(Field::Plane(Box::new(triangles)))
 }

@@ -3,15 +3,12 @@
 
 use serde::Deserialize;
 
-/// A record of the file, in its units.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GrowthRecord {
-    /// Name, as `material.name` takes it.
     pub name: String,
     pub alloy: String,
     pub form: String,
-    /// Loading and crack direction.
     pub orientation: String,
     pub environment: String,
     pub(crate) youngs_modulus_gpa: f64,
@@ -40,7 +37,6 @@ pub(crate) const MPA_PER_KSI: f64 = 6.894_757_293;
 pub const MM_PER_INCH: f64 = 25.4;
 /// MPa√m in a ksi√in.
 pub const MPA_SQRT_M_PER_KSI_SQRT_IN: f64 = 1.098_843_4;
-
 const FILE: &str = include_str!("../../../data/materials/growth.csv");
 /// Where its figures come from.
 pub const SOURCE: &str = "NASGRO 4, constants of the NASGRO equation (Forman and Mettu 1992), fits of NASA and FAA";
@@ -61,7 +57,6 @@ impl GrowthRecord {
         format!("{}, {}, {}, {}", self.alloy, self.form, self.orientation, self.environment)
     }
 
-    /// Where its law was checked, in words.
     pub fn checked(&self) -> &str {
         if self.checked.is_empty() { "not checked against tests" } else { &self.checked }
     }

@@ -22,16 +22,12 @@ use perilife_base::keys::{key, nearest, section};
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../data/materials");
 
 perilife_base::keys! {
-    /// One number of a material file.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Property {
         value: f64 = key("value", "Value: in the unit of its key");
         source: String = key("source", "Source");
         note: Option<String> = key("note", "Note: thickness, orientation, heat treatment");
     }
-}
-perilife_base::keys! {
-    /// A material file.
     #[derive(Debug, Clone, PartialEq)]
     pub struct MaterialFile {
         title: String = key("title", "Title");
@@ -46,7 +42,6 @@ perilife_base::keys! {
     }
 }
 
-/// Names of the built-in materials, sorted.
 pub fn names() -> Vec<String> {
     let mut names: Vec<String> = FILES
         .files()
@@ -77,8 +72,8 @@ pub fn find(name: &str, folder: &Folder) -> Result<MaterialFile> {
         let near = nearest(name, all()).or_else(part);
         let near = near.map_or_else(String::new, |near| format!("did you mean \"{near}\"? "));
         let files = files.join(", ");
-        let remedy =
-            format!("{near}use one of {files}, an entry of `perilife list materials`, or the path of your own .toml file");
+        let known = "an entry of `perilife list materials`, or the path of your own .toml file";
+        let remedy = format!("{near}use one of {files}, {known}");
         return Err(input("material.name", format!("\"{name}\""), "unknown material", remedy));
     };
     let document = Document::parse(text, name, Folder::none(), &[])?;
@@ -112,7 +107,6 @@ fn of_record(record: &GrowthRecord) -> MaterialFile {
     }
 }
 
-/// Reads a material file; keys in messages are those of that file.
 fn read(document: &Document) -> Result<MaterialFile> {
     section(&Value::Table(document.table.clone()), "")
 }

@@ -13,33 +13,25 @@ use perilife_base::input::{DENSITY, Folder};
 use perilife_base::keys::{Given, Plain, Section, energy, intensity, key, modulus, number, section, stress};
 
 perilife_base::kinds! {
-    /// Plane state of the plate.
     pub enum Plane for "material.plane" {
         Stress = "stress": "plane stress: thin plate",
         Strain = "strain": "plane strain: thick plate",
     }
 }
 
-/// Elastic constants and strengths, SI.
+/// Elastic constants and strengths, SI: moduli and strengths in Pa, fracture toughness in Pa√m, fracture energy G_c in J/m², density in
+/// kg/m³.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// Name in `data/materials`, or "inline".
     pub name: String,
-    /// Young's modulus E, Pa.
     pub youngs_modulus: f64,
-    /// Poisson's ratio ν.
     pub poisson_ratio: f64,
-    /// Plane stress or plane strain.
     pub plane: Plane,
-    /// Yield strength, Pa.
     pub yield_strength: Option<f64>,
-    /// Fracture toughness, Pa√m.
     pub toughness: Option<f64>,
-    /// Fracture energy G_c, J/m².
     pub fracture_energy: Option<f64>,
-    /// Density ρ, kg/m³.
     pub density: Option<f64>,
-    /// Tensile strength f_t, Pa.
     pub tensile_strength: Option<f64>,
 }
 
@@ -60,13 +52,11 @@ impl Material {
     }
 
     /// Shear modulus G = E / (2 (1+ν)), Pa.
-    #[inline]
     pub fn shear_modulus(&self) -> f64 {
         self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
     }
 
     /// E' of `K = √(E' G)`: E in plane stress, E/(1-ν²) in plane strain, Pa.
-    #[inline]
     pub fn plane_modulus(&self) -> f64 {
         match self.plane {
             Plane::Stress => self.youngs_modulus,
@@ -76,7 +66,6 @@ impl Material {
 }
 
 perilife_base::keys! {
-    /// Keys of `[material]`.
     pub struct Input {
         name: Option<String> = key("name", "Material: a name of `perilife list materials`, or the path of your own .toml file");
         youngs_modulus: Option<Plain> = modulus(E, "Young's modulus E");

@@ -22,7 +22,6 @@ use perilife_base::table::{self, Fault, whole_file};
 use perilife_base::units::round_mm;
 
 pub const KEY: &str = "specimen.beta_file";
-/// First line of the file.
 pub const HEADER: &str = "crack_length_mm,beta";
 /// Share of a length by which the table may end before it.
 const SLACK: f64 = 1e-9;
@@ -159,7 +158,6 @@ impl BetaTable {
     }
 }
 
-/// A row of the file, SI.
 #[derive(Debug, Clone, Copy)]
 struct BetaRow {
     line: usize,
@@ -169,7 +167,6 @@ struct BetaRow {
 }
 
 impl BetaRow {
-    /// What is wrong with it, its length as the file has it.
     fn fault(self, file: &Path, name: &str, problem: impl Into<String>, remedy: &str) -> Error {
         let length = ((self.length / self.unit * 1e6).round() / 1e6).to_string();
         Fault { line: Some(self.line), key: Some(name), value: Some(&length), ..whole_file(file) }.error(problem, remedy)
@@ -184,7 +181,6 @@ const WORDS: Words = Words {
     remedy: "begin with crack_length_mm,beta (or crack_length_in,beta), then one pair a line",
 };
 
-/// The rows of the table, and the name of the column of lengths.
 fn rows(bytes: &[u8], file: &Path) -> Result<(Vec<BetaRow>, String)> {
     let table = table::read(bytes, file, &WORDS)?;
     let roles = WORDS.roles(&table)?;

@@ -5,7 +5,6 @@ use super::geometry::{direction, distance, distance_to_segment, segments_touch, 
 
 /// Share of the last piece that is kept where an end is drawn back over it.
 const STUB: f64 = 0.1;
-
 /// Turn of a crack, rad, up to which it is straight for what is read around its tip: a fifth of the radius of an arc.
 pub const STRAIGHT_TURN: f64 = 0.2;
 
@@ -16,7 +15,6 @@ pub struct CrackLine {
     pub points: Vec<Point>,
 }
 
-/// Which end of which line a tip is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct LineEnd {
     pub line: usize,
@@ -26,31 +24,26 @@ pub struct LineEnd {
 
 impl CrackLine {
     /// Length of its straight piece at one end, m.
-    #[inline]
     pub fn last_piece(&self, at_last: bool) -> f64 {
         let piece = if at_last { self.points.windows(2).last() } else { self.points.windows(2).next() };
         piece.map_or(0.0, |piece| distance(piece[0], piece[1]))
     }
 
-    #[inline]
     pub fn straight(from: Point, to: Point) -> Self {
         CrackLine { points: vec![from, to] }
     }
 
     /// Length along the line, m.
-    #[inline]
     pub fn length(&self) -> f64 {
         self.points.windows(2).map(|piece| distance(piece[0], piece[1])).sum()
     }
 
-    #[inline]
     pub fn end(&self, at_last: bool) -> Point {
         // A line has two points at the least.
         if at_last { self.points[self.points.len() - 1] } else { self.points[0] }
     }
 
     /// Unit vector in which the line points at one of its ends, out of itself.
-    #[inline]
     pub fn direction(&self, at_last: bool) -> Point {
         let n = self.points.len();
         if at_last { direction(self.points[n - 2], self.points[n - 1]) } else { direction(self.points[1], self.points[0]) }
@@ -138,12 +131,10 @@ impl CrackLine {
     }
 
     /// Adds a straight piece at one of its ends.
-    #[inline]
     pub fn grow(&mut self, at_last: bool, to: Point) {
         if at_last { self.points.push(to) } else { self.points.insert(0, to) }
     }
 
-    /// Its straight pieces, in its own sense.
     #[inline]
     pub fn pieces(&self) -> impl Iterator<Item = [Point; 2]> + '_ {
         self.points.windows(2).map(|piece| [piece[0], piece[1]])

@@ -12,8 +12,6 @@ pub enum LengthConvention {
 }
 
 impl Specimen {
-    /// Number of tips of a crack.
-    #[inline]
     pub fn tips_of(&self, line: &CrackLine) -> usize {
         let ends = |tip: &&TipSeed| !tip.from_slot && [true, false].iter().any(|&at_last| line.end(at_last) == tip.position);
         self.tips.iter().filter(ends).count()
@@ -32,7 +30,6 @@ impl Specimen {
     }
 
     /// Least way from the tip of a crack over which that is straight, m ([`CrackLine::straight_way`]).
-    #[inline]
     pub fn shortest_path(&self) -> f64 {
         let lines = self.crack_lines();
         let ends = (0..self.tips.len()).filter_map(|tip| self.line_end(tip));
@@ -40,7 +37,6 @@ impl Specimen {
     }
 
     /// Crack length in the convention of the specimen for given growths of its tips, m.
-    #[inline]
     pub fn crack_length_after(&self, growth_of_tips: &[f64]) -> f64 {
         let sum: f64 = growth_of_tips.iter().sum();
         match self.convention {
@@ -73,13 +69,10 @@ impl Specimen {
         self.convention == LengthConvention::SumOfTips && self.crack_lines().len() > 1 && self.has_sharp_tips()
     }
 
-    /// Key that its cracks were given by.
-    #[inline]
     pub fn crack_key(&self) -> &'static str {
         self.kind.crack_key(self.convention)
     }
 
-    /// The cracks as lines, in their order.
     pub fn crack_lines(&self) -> Vec<CrackLine> {
         let mut lines: Vec<CrackLine> = Vec::with_capacity(self.cracks.len());
         for crack in &self.cracks {
@@ -91,8 +84,6 @@ impl Specimen {
         lines
     }
 
-    /// Takes these lines for its cracks.
-    #[inline]
     pub fn set_crack_lines(&mut self, lines: &[CrackLine]) {
         let pieces = |line: &CrackLine| {
             line.pieces().enumerate().map(|(piece, [from, to])| Crack { from, to, continues: piece > 0 }).collect::<Vec<_>>()
@@ -113,7 +104,6 @@ impl Specimen {
     }
 
     /// Whether it has tips, and all of them are those of sharp cracks.
-    #[inline]
     pub fn has_sharp_tips(&self) -> bool {
         !self.tips.is_empty() && (0..self.tips.len()).all(|tip| self.line_end(tip).is_some())
     }

@@ -8,14 +8,12 @@ pub const PER_SPACING: f64 = 8.0;
 /// Depth in spacings at which a piece is asked whether it has material behind it.
 const BEHIND: f64 = 1e-3;
 
-/// A short piece of the rim.
+/// A short piece of the rim about its middle, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Facet {
-    /// Its middle, m.
     pub at: Point,
     /// Unit vector out of the material.
     pub normal: Point,
-    /// Its length, m.
     pub length: f64,
 }
 
@@ -54,7 +52,6 @@ pub fn arc(centre: Point, radius: f64, from: f64, sweep: f64, spacing: f64) -> V
     (0..count as usize).map(piece).collect()
 }
 
-/// The same piece facing the other way.
 pub fn turned_over(facet: Facet) -> Facet {
     Facet { normal: facet.normal.map(|n| -n), ..facet }
 }

@@ -26,7 +26,6 @@ pub fn direction(a: Point, b: Point) -> Point {
 }
 
 /// The direction of a vector that was given, of length 1; `None` for one that shows none.
-#[inline]
 pub fn unit([x, y]: Point) -> Option<Point> {
     let size = x.hypot(y);
     (1e-9..1e9).contains(&size).then(|| [x / size, y / size])
@@ -39,7 +38,6 @@ pub fn turn(a: Point, b: Point, c: Point) -> f64 {
 }
 
 /// Turn of the way from `before` over `at` to `after`, rad, negative where a counter-clockwise outline is concave.
-#[inline]
 pub fn turn_at(before: Point, at: Point, after: Point) -> f64 {
     let ([ax, ay], [bx, by]) = (direction(before, at), direction(at, after));
     (ax * by - ay * bx).atan2(ax * bx + ay * by)
@@ -123,13 +121,11 @@ pub fn distance_to_polygon(p: Point, polygon: &[Point]) -> f64 {
 }
 
 /// Signed area, m²: positive if counter-clockwise.
-#[inline]
 pub fn polygon_area(polygon: &[Point]) -> f64 {
     edges(polygon).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>() / 2.0
 }
 
 /// Lower left and upper right corner of the box around the points.
-#[inline]
 pub fn bounding_box(points: &[Point]) -> [Point; 2] {
     points.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], p| {
         [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
@@ -137,7 +133,6 @@ pub fn bounding_box(points: &[Point]) -> [Point; 2] {
 }
 
 /// The first pair of edges of the polygon that touch without being neighbours, by index.
-#[inline]
 pub fn self_intersection(polygon: &[Point]) -> Option<(usize, usize)> {
     let n = polygon.len();
     let edge = |i: usize| (polygon[i], polygon[(i + 1) % n]);
@@ -180,8 +175,6 @@ impl Places {
         cells
     }
 
-    /// Whether there is none.
-    #[inline]
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
@@ -235,7 +228,6 @@ impl Specimen {
 
     /// The same of a point of a lattice: on the outline, within `slack`, m, a point is one on every side of the plate, and none on the
     /// rim of a hole or a slot, so that a plate that is its own mirror image has points that are.
-    #[inline]
     pub fn has_point_at(&self, point: Point, slack: f64) -> bool {
         let is_inside = || point_in_polygon(point, &self.outline) || distance_to_polygon(point, &self.outline) <= slack;
         let is_void = |slot: &Slot| slot.contains(point) || distance_to_polygon(point, &slot.corners()) <= slack;
@@ -271,9 +263,7 @@ perilife_base::kinds! {
         Left = "left": "side at the smallest x",
         Right = "right": "side at the largest x",
     }
-}
 
-perilife_base::kinds! {
     /// Components a support holds.
     pub enum Component for "supports.fix" {
         X = "x": "no displacement along x",
@@ -283,7 +273,6 @@ perilife_base::kinds! {
 
 impl Edge {
     /// Unit vector out of the plate.
-    #[inline]
     pub fn normal(self) -> Point {
         match self {
             Edge::Top => [0.0, 1.0],
@@ -294,13 +283,11 @@ impl Edge {
     }
 
     /// Stretches of the outline on this side, within 1e-6 of the size of the plate; empty where only a corner touches the bounding box.
-    #[inline]
     pub fn stretches(self, specimen: &Specimen) -> Vec<(Point, Point)> {
         self.level(specimen, [-1.0, 1e-6])
     }
 
     /// A stretch along this side that lies deeper than those of it by less than a drawing can tell from a slip, 1e-4 of the size of the plate.
-    #[inline]
     pub fn step(self, specimen: &Specimen) -> Option<(Point, Point)> {
         self.level(specimen, [1e-6, 1e-4]).first().copied()
     }

@@ -11,24 +11,19 @@ use super::{BetaTable, Specimen, SpecimenKind};
 /// Plates shorter than this many widths are stiffer or softer than the long strip of the formulas by more than their
 /// error (a square plate with a/W = 0.5: 3.00 against 2.83 for a single edge crack).
 pub const SHORTEST_LENGTH_OVER_WIDTH: f64 = 1.5;
-
 /// Slack of the range of a formula: 20 mm of 100 mm is 0.2 less a rounding.
 const RANGE_SLACK: f64 = 1e-9;
-
 /// A figure over relative crack length.
 pub(super) type Curve = fn(f64) -> f64;
 /// The factor of K over relative crack length and [`HandbookFormula::shape`].
 pub(super) type Factor = fn(f64, f64) -> f64;
-
 /// Error of K, above which a formula is looked at beside others and gives no life.
 const ERROR_OF_LIVES: f64 = 0.01;
 
-/// A formula for K of one specimen.
 #[derive(Debug, Clone)]
 pub struct HandbookFormula {
     pub name: &'static str,
     pub source: &'static str,
-    /// Where it holds and how well, in words.
     pub range: &'static str,
     /// Smallest and largest relative crack length it holds for: 2a/W with two tips or two cracks, a/W with one.
     pub bounds: [f64; 2],
@@ -44,7 +39,6 @@ pub struct HandbookFormula {
     pub(super) shape: f64,
     /// Relative crack length at which no ligament is left.
     pub(super) limit: f64,
-    /// The table that stands in the place of the formula.
     pub(super) table: Option<BetaTable>,
 }
 
@@ -68,60 +62,51 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
         return specimen.own_formula.clone().filter(|formula| (formula.error)(0.0) <= ERROR_OF_LIVES);
     }
     let long = specimen.length() >= SHORTEST_LENGTH_OVER_WIDTH * specimen.width;
-    let (name, source, range, bounds, of, error): (_, _, _, _, Factor, Curve) = match specimen.kind {
-        SpecimenKind::MiddleTension if long => (
-            "Feddersen secant",
-            "Feddersen 1966, ASTM STP 410; ASTM E647 annex A2",
-            "0.3 % for 2a/W ≤ 0.7, 2 % low at 0.9; length/width ≥ 1.5",
-            [0.0, 0.95],
-            |x, _| (1.0 / half(x).cos()).sqrt(),
-            |x| if x <= 0.7 { 0.003 } else { 0.003 + 0.085 * (x - 0.7) },
-        ),
-        SpecimenKind::SingleEdgeTension if long && !specimen.has_straight_grips() => (
-            "Tada single edge",
-            "Tada, Paris and Irwin 2000, part II",
-            "0.5 % for any a/W; ends free to rotate, length/width ≥ 2",
-            [0.0, 1.0],
-            |x, _| tangent(x) * (0.752 + 2.02 * x + 0.37 * (1.0 - half(x).sin()).powi(3)) / half(x).cos(),
-            |_| 0.005,
-        ),
-        SpecimenKind::DoubleEdgeTension if long => (
-            "Tada double edge",
-            "Tada, Paris and Irwin 2000, part II",
-            "1 % for any 2a/W; length/width ≥ 1.5",
-            [0.0, 1.0],
-            |x, _| (1.0 + 0.122 * half(x).cos().powi(4)) * tangent(x),
-            |_| 0.01,
-        ),
-        SpecimenKind::CompactTension => (
-            "ASTM E647 compact",
-            "ASTM E647 annex A1",
-            "0.5 % for a/W ≥ 0.2",
-            [0.2, 1.0],
-            |x, _| {
+    let cracks = specimen.kind.sharing()?.0;
+    let base = HandbookFormula { cracks, ..HandbookFormula::unstated(specimen.width, specimen.thickness) };
+    Some(match specimen.kind {
+        SpecimenKind::MiddleTension if long => HandbookFormula {
+            name: "Feddersen secant",
+            source: "Feddersen 1966, ASTM STP 410; ASTM E647 annex A2",
+            range: "0.3 % for 2a/W ≤ 0.7, 2 % low at 0.9; length/width ≥ 1.5",
+            bounds: [0.0, 0.95],
+            of: |x, _| (1.0 / half(x).cos()).sqrt(),
+            error: |x| if x <= 0.7 { 0.003 } else { 0.003 + 0.085 * (x - 0.7) },
+            ..base
+        },
+        SpecimenKind::SingleEdgeTension if long && !specimen.has_straight_grips() => HandbookFormula {
+            name: "Tada single edge",
+            source: "Tada, Paris and Irwin 2000, part II",
+            range: "0.5 % for any a/W; ends free to rotate, length/width ≥ 2",
+            of: |x, _| tangent(x) * (0.752 + 2.02 * x + 0.37 * (1.0 - half(x).sin()).powi(3)) / half(x).cos(),
+            error: |_| 0.005,
+            ..base
+        },
+        SpecimenKind::DoubleEdgeTension if long => HandbookFormula {
+            name: "Tada double edge",
+            source: "Tada, Paris and Irwin 2000, part II",
+            range: "1 % for any 2a/W; length/width ≥ 1.5",
+            of: |x, _| (1.0 + 0.122 * half(x).cos().powi(4)) * tangent(x),
+            error: |_| 0.01,
+            ..base
+        },
+        SpecimenKind::CompactTension => HandbookFormula {
+            name: "ASTM E647 compact",
+            source: "ASTM E647 annex A1",
+            range: "0.5 % for a/W ≥ 0.2",
+            bounds: [0.2, 1.0],
+            of: |x, _| {
                 let polynomial = 0.886 + x * (4.64 + x * (-13.32 + x * (14.72 - 5.6 * x)));
                 (2.0 + x) / (1.0 - x).powf(1.5) * polynomial
             },
-            |_| 0.005,
-        ),
+            error: |_| 0.005,
+            is_of_pins: true,
+            ..base
+        },
         _ => return None,
-    };
-    let is_of_pins = specimen.kind == SpecimenKind::CompactTension;
-    let cracks = specimen.kind.sharing()?.0;
-    Some(HandbookFormula {
-        name,
-        source,
-        range,
-        bounds,
-        of,
-        error,
-        cracks,
-        is_of_pins,
-        ..HandbookFormula::unstated(specimen.width, specimen.thickness)
     })
 }
 
-/// K by a table of β, whose error nobody states.
 fn of_table(specimen: &Specimen, table: &BetaTable) -> HandbookFormula {
     let Specimen { width, thickness, .. } = *specimen;
     HandbookFormula {
@@ -214,7 +199,6 @@ impl HandbookFormula {
         self.table.as_ref().map_or_else(of_formula, |table| table.at(crack_length))
     }
 
-    /// Whether the formula holds at this crack length.
     pub fn holds_at(&self, crack_length: f64) -> bool {
         (self.bounds[0] - RANGE_SLACK..=self.bounds[1] + RANGE_SLACK).contains(&self.relative_length(crack_length))
     }
@@ -224,7 +208,6 @@ impl HandbookFormula {
         self.limit * self.width / self.cracks
     }
 
-    /// Relative crack length of the formula: 2a/W or a/W.
     fn relative_length(&self, crack_length: f64) -> f64 {
         self.cracks * crack_length / self.width
     }

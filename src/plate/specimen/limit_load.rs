@@ -85,9 +85,7 @@ impl Specimen {
             None => weakest_section(self, cracks).map(|section| yield_strength * section.load_over_strength),
         }
     }
-}
 
-impl Specimen {
     /// The same of a crack length that all tips have grown to alike, straight ahead, as a handbook takes it.
     pub fn limit_load_at(&self, crack_length: f64, yield_strength: f64) -> Option<f64> {
         // The sections of a standard kind are known without its cracks.
@@ -96,7 +94,6 @@ impl Specimen {
     }
 }
 
-/// A plate with its cracks as they are now.
 pub(super) struct Plate<'a> {
     pub specimen: &'a Specimen,
     pub cracks: &'a [CrackLine],
@@ -109,7 +106,6 @@ pub(super) struct Plate<'a> {
 struct Side {
     force: Point,
     moment: f64,
-    /// Whether a support holds x, y.
     held: [bool; 2],
 }
 
@@ -259,7 +255,6 @@ impl<'a> Plate<'a> {
     }
 }
 
-/// A piece of what is left of a cut, on its chord.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     from: f64,

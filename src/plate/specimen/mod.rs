@@ -30,11 +30,9 @@ pub use part_through::{FrontTip, PartThrough};
 pub use pin::Bearing;
 pub use read::{PART_THROUGH, from_value, mistakes};
 
-/// A point of the plate, metres.
 pub type Point = [f64; 2];
 
 perilife_base::kinds! {
-    /// Shapes a case can name.
     pub enum SpecimenKind for "specimen.kind" {
         MiddleTension = "middle_tension": "plate with a central crack, M(T) of ASTM E647; crack length = half length a",
         SingleEdgeTension = "single_edge_tension": "plate with one edge crack; needs ends = pinned, clamped or uniform_stress",
@@ -55,17 +53,12 @@ perilife_base::kinds! {
         WedgeOpening = "wedge_opening": "modified WOL of Novak and Rolfe, half height 0.486 W, loaded by pins; crack length from the load line",
         Cruciform = "cruciform": "cruciform with a central crack, uniaxial or biaxial; crack length = half length",
     }
-}
 
-perilife_base::kinds! {
-    /// Heads of a lug.
     pub enum Head for "specimen.head" {
         Straight = "straight": "square end, edge_distance_mm from the hole center",
         Round = "round": "half circle about the hole center",
     }
-}
 
-perilife_base::kinds! {
     /// How the ends of a single edge tension specimen are held.
     pub enum Ends for "specimen.ends" {
         Pinned = "pinned": "rigid grips free to rotate about a pin on the centerline",
@@ -74,49 +67,40 @@ perilife_base::kinds! {
     }
 }
 
-/// A circle cut out of the plate.
+/// A circle cut out of the plate, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hole {
-    /// Centre, m.
     pub centre: Point,
-    /// Radius, m.
     pub radius: f64,
 }
 
-/// A straight slot of constant width with square ends, cut out of the plate.
+/// A straight slot of constant width with square ends, cut out of the plate, m: the middles of both ends, and the width across.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slot {
-    /// Middle of one end, m.
     pub from: Point,
-    /// Middle of the other end, m.
     pub to: Point,
-    /// Width across, m.
     pub width: f64,
 }
 
-/// A straight through crack, or a straight piece of one with bends.
+/// A straight through crack, or a straight piece of one with bends; ends in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crack {
-    /// One end, m.
     pub from: Point,
-    /// Other end, m.
     pub to: Point,
     /// Whether it goes on from the end of the crack before it in the list, as the next piece of the same line.
     pub continues: bool,
 }
 
 impl Crack {
-    #[inline]
     pub fn straight(from: Point, to: Point) -> Self {
         Crack { from, to, continues: false }
     }
 }
 
-/// Where growth can start: a crack end inside the plate, or the middle of a slot's end face that lies in the material
+/// Where growth can start, m: a crack end inside the plate, or the middle of a slot's end face that lies in the material
 /// (unless a crack starts from that face).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TipSeed {
-    /// Position, m.
     pub position: Point,
     /// Unit vector in which the crack or slot points, out of itself into the material.
     pub direction: Point,
@@ -124,38 +108,20 @@ pub struct TipSeed {
     pub from_slot: bool,
 }
 
-/// A load on part of the boundary, per unit of the case's load magnitude.
+/// A load on part of the boundary, per unit of the case's load magnitude: on a straight stretch of the outline between two ends, m, or a pin.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Load {
-    /// Uniform traction on a straight stretch of the outline.
-    /// `traction` is in Pa per Pa of the case's nominal stress (so 1.0 normal to the edge for plain tension).
-    Edge {
-        /// One end of the stretch, m.
-        from: Point,
-        /// Other end, m.
-        to: Point,
-        /// Traction on the plate, Pa per Pa.
-        traction: Point,
-    },
-    /// Traction on a straight stretch of the outline that varies linearly from one end to the other: bending in the plane.
-    Bent {
-        /// One end of the stretch, m.
-        from: Point,
-        /// Other end, m.
-        to: Point,
-        /// Traction on the plate at both ends, Pa per Pa.
-        tractions: [Point; 2],
-    },
+    /// Uniform traction, Pa per Pa of the case's nominal stress (so 1.0 normal to the edge for plain tension).
+    Edge { from: Point, to: Point, traction: Point },
+    /// Traction that varies linearly from one end to the other, Pa per Pa: bending in the plane.
+    Bent { from: Point, to: Point, tractions: [Point; 2] },
     /// A pin, which bears on the rim of its hole. `force` is in N per unit of the case's nominal load (N per N, or N per Pa beside loaded edges), along
     /// the unit vector `direction`.
     Pin {
         /// Index into `Specimen::holes`.
         hole: usize,
-        /// Unit vector of the force on the plate.
         direction: Point,
-        /// Force on the plate, N per N or N per Pa.
         force: f64,
-        /// Where it touches the hole.
         contact: Bearing,
     },
 }
@@ -165,13 +131,11 @@ const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 impl Load {
     /// Whether it is a pin whose contact follows from the load.
-    #[inline]
     pub fn is_elastic_pin(&self) -> bool {
         matches!(self, Load::Pin { contact: Bearing::Elastic(_), .. })
     }
 
     /// The stretch of the outline that it loads, with the tractions at both ends; `None` of a pin.
-    #[inline]
     pub fn on_edge(&self) -> Option<(Point, Point, [Point; 2])> {
         match *self {
             Load::Edge { from, to, traction } => Some((from, to, [traction; 2])),
@@ -182,7 +146,6 @@ impl Load {
 
     /// Two places with forces, N per m of thickness, that have force and moment of what acts on an edge from one share of its way to
     /// another; none of a pin.
-    #[inline]
     pub fn forces_between(&self, [start, end]: [f64; 2]) -> Vec<(Point, Point)> {
         let Some((from, to, tractions)) = self.on_edge() else { return Vec::new() };
         let half = 0.5 * (end - start) * geometry::distance(from, to);
@@ -194,37 +157,16 @@ impl Load {
     }
 }
 
+/// What holds a straight stretch of the outline between two ends, m, or the ends of a plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Support {
     /// Points within `depth` of the straight outline stretch `from`-`to` (at least one row) keep the named components at zero.
-    Fixed {
-        /// One end of the stretch, m.
-        from: Point,
-        /// Other end, m.
-        to: Point,
-        /// How deep into the plate the hold reaches, m.
-        depth: f64,
-        /// Whether the x component is held.
-        x: bool,
-        /// Whether the y component is held.
-        y: bool,
-    },
+    Fixed { from: Point, to: Point, depth: f64, x: bool, y: bool },
     /// Both ends move as rigid blocks that do not rotate (clamped grips); the relative displacement along y is what the load asks.
     ClampedEnds,
     /// The straight stretch `from`-`to` is moved as it is: every place of it by `way` of the displacement of the load along the unit
-    /// vector `direction`, so that it neither bends nor turns.
-    Moved {
-        /// One end of the stretch, m.
-        from: Point,
-        /// Other end, m.
-        to: Point,
-        /// Unit vector of the displacement.
-        direction: Point,
-        /// Displacement of the stretch over that of the load.
-        way: f64,
-        /// Whether the component across the displacement is held at zero; else the stretch slides in its grip.
-        held: bool,
-    },
+    /// vector `direction`, so that it neither bends nor turns. Unless `held` at zero across the displacement it slides in its grip.
+    Moved { from: Point, to: Point, direction: Point, way: f64, held: bool },
     /// Both ends move as rigid blocks that may rotate (pinned grips): end rows are made stiff, load is uniform over them.
     RigidEnds,
     /// What the body does not know of takes up the loads, so that they need not balance: supports and driven points of a fracture
@@ -249,29 +191,23 @@ pub struct Specimen {
     pub outline: Vec<Point>,
     pub holes: Vec<Hole>,
     pub slots: Vec<Slot>,
-    /// Through cracks at the start.
     pub cracks: Vec<Crack>,
     /// Crack ends that can grow, in the order of result columns.
     pub tips: Vec<TipSeed>,
-    /// Thickness, m.
     pub thickness: f64,
     /// Characteristic width of the specimen's standard: W, m (C(T): from the load line).
     pub width: f64,
     /// Width that the lattice spacing has to divide, m (C(T): 1.25 W).
     pub gross_width: f64,
-    /// A line y = const through a horizontal crack that must fall between two rows of points; None = free.
+    /// Lines through a horizontal and a vertical crack that must fall between two rows and columns of points; `None`: free.
     pub crack_plane_y: Option<f64>,
-    /// A line x = const through a vertical crack that must fall between two columns of points; None = free.
     pub crack_plane_x: Option<f64>,
     /// Crack length at the start in the specimen's convention, m.
     pub crack_length: f64,
-    /// How growth of tips adds up to crack length.
     pub convention: LengthConvention,
-    /// Loads per unit of nominal load.
     pub loads: Vec<Load>,
     /// Pressure on the faces of all cracks, also where they grow, per unit of nominal load: Pa per Pa, or Pa per N.
     pub crack_pressure: f64,
-    /// Whether the nominal load is a stress or a force.
     pub load_measure: LoadMeasure,
     /// Supports; empty means the loads are in equilibrium by themselves and the plate floats.
     pub supports: Vec<Support>,
@@ -315,14 +251,12 @@ impl Specimen {
     }
 
     /// Whether its ends are clamped or sides of it moved straight, so that they do not turn.
-    #[inline]
     pub fn has_straight_grips(&self) -> bool {
         self.supports.iter().any(|support| matches!(support, Support::ClampedEnds | Support::Moved { .. }))
     }
 
     /// Section over which the nominal stress makes the force `P` of the sides that are moved straight, m²: `P δ = Σ F_i u_i` with
     /// `u_i = way_i δ`.
-    #[inline]
     pub fn moved_section(&self) -> Option<f64> {
         let area = |support: &Support| match *support {
             Support::Moved { from, to, way, .. } => Some(way * geometry::distance(from, to) * self.thickness),
@@ -332,7 +266,6 @@ impl Specimen {
     }
 
     /// Size of the plate along y, m.
-    #[inline]
     pub fn length(&self) -> f64 {
         let [low, high] = geometry::bounding_box(&self.outline);
         high[1] - low[1]
@@ -340,7 +273,6 @@ impl Specimen {
 
     /// Sizes of the flaws that spacing and horizon have to resolve, m: half length of a crack with two tips, whole length of one with
     /// one tip, length of a slot; C(T) from the load line.
-    #[inline]
     pub fn flaw_sizes(&self) -> Vec<f64> {
         if !self.kind.is_plate() {
             return vec![self.crack_length];
@@ -351,7 +283,6 @@ impl Specimen {
     }
 
     /// The smallest of the [`Specimen::flaw_sizes`], m.
-    #[inline]
     pub fn smallest_flaw(&self) -> f64 {
         self.flaw_sizes().into_iter().fold(f64::INFINITY, f64::min)
     }
@@ -365,7 +296,6 @@ impl Specimen {
     }
 
     /// Area of the material, m²: outline less holes and slots.
-    #[inline]
     pub fn area(&self) -> f64 {
         let holes: f64 = self.holes.iter().map(|hole| std::f64::consts::PI * hole.radius * hole.radius).sum();
         let slots: f64 = self.slots.iter().map(|slot| self.length_inside(slot.from, slot.to) * slot.width).sum();

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use perilife_base::error::Result;
+use perilife_base::error::{Result, fail_if};
 use perilife_base::keys::{Given, length, modulus, number};
 use perilife_base::units::GPA;
 
@@ -18,7 +18,6 @@ pub const POISSON_RATIO: f64 = 0.3;
 /// Diameter of the pin over that of the hole up to which it still goes in: round-off of the input.
 const FITS: f64 = 1.0 + 1e-9;
 
-/// Where a pin bears on its hole.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Bearing {
     /// Nothing is known of the pin: a cosine over this half angle, rad. It is [`LOOSE_PIN`] of pins that pull against each other, as in test
@@ -30,12 +29,10 @@ pub enum Bearing {
     Elastic(Pin),
 }
 
-/// A round pin in a hole at least as large.
+/// A round pin in a hole at least as large; SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pin {
-    /// Radius, m.
     pub radius: f64,
-    /// Young's modulus, Pa.
     pub youngs_modulus: f64,
     pub poisson_ratio: f64,
     /// Forces of contact at maximum load on the plate with its initial cracks, once they are found.
@@ -50,11 +47,9 @@ pub struct Contact {
     pub pressure: f64,
     /// Share of the force of the pin that bears elsewhere once contact is sought with the displacement of the solved plate.
     pub residual: f64,
-    /// Pieces of rim of equal size with their forces.
     pub pieces: Vec<RimForce>,
 }
 
-/// Force of a pin on a piece of rim.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RimForce {
     /// Middle of the piece, rad, from the direction of the force of the pin, counter-clockwise.
@@ -66,7 +61,6 @@ pub struct RimForce {
 }
 
 perilife_base::keys! {
-    /// Keys of the pin of a specimen.
     #[derive(Debug)]
     pub struct PinKeys {
         half_angle: Option<f64> = number("pin_half_angle_deg", "Half angle of the contact arc, °: 90 for a close-fitting pin", ARC, 1.0, 90.0);
@@ -77,9 +71,7 @@ perilife_base::keys! {
     }
 }
 
-/// What an angle of contact is.
 pub const ARC: &str = "an angle in degrees, 90 for a close-fitting pin";
-/// What a Poisson's ratio is.
 pub const POISSON: &str = "a Poisson's ratio";
 
 impl Bearing {
@@ -104,10 +96,8 @@ impl Bearing {
             return of_elastic.map_or(Ok(Bearing::Unknown(LOOSE_PIN)), missing);
         };
         let radius = diameter / 2.0;
-        if radius > hole * FITS {
-            let problem = format!("is larger than the hole ({} mm); interference fits are not supported", 2e3 * hole);
-            return Err(given.refuse(OF_ELASTIC[0], problem, "use a pin smaller than its hole"));
-        }
+        let problem = || format!("is larger than the hole ({} mm); interference fits are not supported", 2e3 * hole);
+        fail_if!(radius > hole * FITS, given.refuse(OF_ELASTIC[0], problem(), "use a pin smaller than its hole"));
         let PinKeys { youngs_modulus, poisson_ratio, .. } = *keys;
         Ok(Bearing::Elastic(Pin { radius: radius.min(hole), youngs_modulus, poisson_ratio, found: None }))
     }
@@ -120,7 +110,6 @@ impl Bearing {
         }
     }
 
-    /// In words, for answers.
     pub fn words(&self) -> String {
         match self {
             Bearing::Unknown(half_angle) => format!("contact ±{:.0}° assumed", half_angle.to_degrees()),
@@ -136,9 +125,7 @@ impl Pin {
         let pin = format!("{:.4} mm, E {:.0} GPa", 2e3 * radius, youngs_modulus / GPA);
         let Some(contact) = found else { return pin };
         let [from, to] = contact.ends.map(f64::to_degrees);
-        format!(
-            "{pin}: contact {from:.1}° to {to:+.1}° at N = 0, peak pressure {:.0} MPa",
-            contact.pressure / perilife_base::units::MPA
-        )
+        let peak = contact.pressure / perilife_base::units::MPA;
+        format!("{pin}: contact {from:.1}° to {to:+.1}° at N = 0, peak pressure {peak:.0} MPa")
     }
 }

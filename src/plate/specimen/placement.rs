@@ -5,7 +5,7 @@ use super::geometry::{
     nearest_of_segment, point_in_polygon, segments_touch, turn_at,
 };
 use super::{Crack, CrackLine, Hole, Point, Slot, Specimen, TipSeed};
-use perilife_base::error::{Result, input_missing};
+use perilife_base::error::{Result, fail_if, input_missing};
 use perilife_base::units::{given_mm, round_mm};
 
 /// What lies closer than this counts as touching, m: far below any spacing, far above round-off.
@@ -27,19 +27,13 @@ pub(super) fn check_holes(specimen: &Specimen) -> Result<()> {
         if !inside || distance_to_polygon(hole.centre, &specimen.outline) < hole.radius + TOUCH {
             let problem =
                 format!("extends past the outline (center {}, radius {} mm)", given_mm(hole.centre), round_mm(hole.radius));
-            return Err(input_missing(
-                &format!("specimen.holes[{i}]"),
-                problem,
-                "move it inside, or draw the opening into outline_mm",
-            ));
+            let remedy = "move it inside, or draw the opening into outline_mm";
+            return Err(input_missing(&format!("specimen.holes[{i}]"), problem, remedy));
         }
         for (j, other) in specimen.holes[..i].iter().enumerate() {
             if distance(hole.centre, other.centre) < hole.radius + other.radius + TOUCH {
-                return Err(input_missing(
-                    &format!("specimen.holes[{i}]"),
-                    format!("overlaps holes[{j}]"),
-                    "move the holes apart",
-                ));
+                let remedy = "move the holes apart";
+                return Err(input_missing(&format!("specimen.holes[{i}]"), format!("overlaps holes[{j}]"), remedy));
             }
         }
     }
@@ -128,10 +122,9 @@ pub(super) fn place_cracks(
         for (j, &crack) in cracks.iter().enumerate() {
             check_path(specimen, crack, &key)?;
             // Of cracks that share an end, too, which are one by now.
-            if cracks[..j].iter().any(|other| is_overlap(crack, *other)) {
-                let problem = "folds back on itself or overlaps a crack that shares its end";
-                return Err(input_missing(&key, problem, "give every part of a crack once"));
-            }
+            let problem = "folds back on itself or overlaps a crack that shares its end";
+            let remedy = "give every part of a crack once";
+            fail_if!(cracks[..j].iter().any(|other| is_overlap(crack, *other)), input_missing(&key, problem, remedy));
             if let Some(other) = specimen.cracks.iter().find(|other| is_overlap(crack, **other)) {
                 let line =
                     specimen.crack_lines().iter().position(|line| line.pieces().any(|piece| piece == [other.from, other.to]));
@@ -171,10 +164,8 @@ pub(super) fn place_cracks(
             || [false, true].iter().all(|&at_last| distance_to_polygon(line.end(at_last), &specimen.outline) <= TOUCH);
         if specimen.tips_of(line) == 0 && (is_from_edge_to_edge() || specimen.tips.is_empty()) {
             let key = format!("specimen.cracks[{i}]");
-            if is_joined() {
-                let problem = "meets another crack and has no tip inside the material";
-                return Err(input_missing(&key, problem, "end one of them inside the plate"));
-            }
+            let problem = "meets another crack and has no tip inside the material";
+            fail_if!(is_joined(), input_missing(&key, problem, "end one of them inside the plate"));
             let problem = "has no tip inside the material (a tip within 1 % of its length from an edge counts as on it)";
             return Err(input_missing(&key, problem, "end it inside the plate"));
         }
@@ -193,11 +184,9 @@ fn closely_passed(specimen: &Specimen, lines: &[CrackLine]) -> Vec<String> {
                 .map(|&at_last| distance(line.end(at_last), hole.centre) - hole.radius)
                 .fold(f64::INFINITY, f64::min);
             (gap <= MOUTH * line.length() && end > MOUTH * line.length()).then(|| {
-                format!(
-                    "specimen.cracks[{i}] passes holes[{j}] at {} mm: the ligament is too thin to resolve and K may be far \
-                     off; end the crack in the hole and start another beyond it",
-                    round_mm(gap.max(0.0))
-                )
+                let thin = "the ligament is too thin to resolve and K may be far off";
+                let remedy = "end the crack in the hole and start another beyond it";
+                format!("specimen.cracks[{i}] passes holes[{j}] at {} mm: {thin}; {remedy}", round_mm(gap.max(0.0)))
             })
         };
         specimen.holes.iter().enumerate().filter_map(near).collect::<Vec<_>>()
@@ -238,7 +227,6 @@ fn with_shared_ends_joined(specimen: &Specimen, paths: Vec<Vec<Point>>) -> Vec<(
     }
 }
 
-/// Whether a path goes through a place, or ends there.
 fn passes(path: &[Point], at: Point) -> bool {
     path.windows(2).any(|piece| distance_to_segment(at, piece[0], piece[1]) < TOUCH)
 }
@@ -329,12 +317,8 @@ fn at_mouth(specimen: &Specimen, [end, other]: [Point; 2], length: f64, key: &st
     let Some((gap, mouth)) = mouth(specimen, end, other).filter(|(gap, _)| *gap <= MOUTH * length) else {
         return (end, false);
     };
-    notes.push(format!(
-        "{key} ends {} mm from an edge (under 1 % of its length, {} mm): moved to the edge, at {}",
-        round_mm(gap),
-        round_mm(length),
-        given_mm(mouth)
-    ));
+    let near = format!("{} mm from an edge (under 1 % of its length, {} mm)", round_mm(gap), round_mm(length));
+    notes.push(format!("{key} ends {near}: moved to the edge, at {}", given_mm(mouth)));
     (mouth, true)
 }
 

@@ -22,7 +22,7 @@ use super::geometry::{bounding_box, distance, polygon_area, segments_touch, self
 use super::keys::{LENGTH, THICKNESS, WIDTH};
 use super::placement::{check_holes, place_cracks, place_slots};
 use super::{Hole, LengthConvention, Point, Slot, Specimen, SpecimenKind};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::Folder;
 use perilife_base::keys::{Given, Section, coordinate, key, length};
 use perilife_base::units::place_mm;
@@ -31,8 +31,6 @@ use perilife_base::units::place_mm;
 const ITEMS_MAX: usize = 500;
 /// Corners of a drawing, whose arcs have many.
 const CORNERS_MAX: usize = 4000;
-
-/// What the keys of an outline say.
 const OUTLINE: &str = "the outline";
 
 perilife_base::keys! {
@@ -49,22 +47,16 @@ perilife_base::keys! {
         cracks: Vec<CrackKeys> = key("cracks", "Cracks: straight or kinked"), or "none" Vec::new();
         notches: Vec<NotchKeys> = key("notches", "Notches: straight slots with square ends"), or "none" Vec::new();
     }
-}
-perilife_base::keys! {
     pub(super) struct HoleKeys {
         x: f64 = coordinate("x_mm", "Hole center, x");
         y: f64 = coordinate("y_mm", "Hole center, y");
         diameter: f64 = length("diameter_mm", "Hole diameter");
     }
-}
-perilife_base::keys! {
     struct CrackKeys {
         from: Option<Point> = coordinate("from_mm", "One end: [x, y]");
         to: Option<Point> = coordinate("to_mm", "Other end: [x, y]");
         path: Option<Vec<Point>> = coordinate("path_mm", "Corners of a kinked crack: both ends included");
     }
-}
-perilife_base::keys! {
     struct NotchKeys {
         from: Point = coordinate("from_mm", "One end: [x, y]");
         to: Point = coordinate("to_mm", "Other end: [x, y]");
@@ -137,7 +129,6 @@ pub(super) fn read_holes(list: &[HoleKeys]) -> Result<Vec<Hole>> {
     items("specimen.holes", list, |item, _| Ok(Hole { centre: [item.x, item.y], radius: item.diameter / 2.0 }))
 }
 
-/// What the drawing of a plate says, where it has one.
 fn drawn(given: &Given<'_>, own: &Keys, folder: &Folder) -> Result<Option<Shape>> {
     let Some(file) = &own.file else {
         let problem = "applies only to outline_file, which is missing";
@@ -196,10 +187,8 @@ fn polygon(corners: &[Point]) -> Result<Vec<Point>> {
     if outline.len() > 1 && outline.first() == outline.last() {
         outline.pop();
     }
-    if outline.len() > ITEMS_MAX {
-        let remedy = format!("give 3 to {ITEMS_MAX} corners in order");
-        return Err(input(KEY, format!("{} points", corners.len()), "is not an outline", remedy));
-    }
+    let remedy = || format!("give 3 to {ITEMS_MAX} corners in order");
+    fail_if!(outline.len() > ITEMS_MAX, input(KEY, format!("{} points", corners.len()), "is not an outline", remedy()));
     simple(outline, KEY)
 }
 
@@ -221,10 +210,8 @@ fn simple(mut outline: Vec<Point>, key: &str) -> Result<Vec<Point>> {
     }
     let area = polygon_area(&outline);
     let [low, high] = bounding_box(&outline);
-    if area.abs() < 1e-6 * (high[0] - low[0]).max(high[1] - low[1]).powi(2) {
-        let remedy = "give the corners in order around the plate";
-        return Err(input(key, count, "encloses no area", remedy));
-    }
+    let remedy = "give the corners in order around the plate";
+    fail_if!(area.abs() < 1e-6 * (high[0] - low[0]).max(high[1] - low[1]).powi(2), input(key, count, "encloses no area", remedy));
     if area < 0.0 {
         outline.reverse();
     }
@@ -239,7 +226,6 @@ fn items<I, T>(key: &str, list: &[I], read: impl Fn(&I, &str) -> Result<T>) -> R
     list.iter().enumerate().map(|(i, item)| read(item, &format!("{key}[{i}]"))).collect()
 }
 
-/// Corners of a crack, both ends included.
 fn crack_path(item: &CrackKeys, path: &str) -> Result<Vec<Point>> {
     const REMEDY: &str = "give from_mm and to_mm, or path_mm = [[x, y], [x, y], ...]";
     let line = match (item.from, item.to, &item.path) {
@@ -271,10 +257,8 @@ fn crack_path(item: &CrackKeys, path: &str) -> Result<Vec<Point>> {
     Ok(line.clone())
 }
 
-/// Two different end points.
 fn ends(path: &str, from: Point, to: Point) -> Result<(Point, Point)> {
-    if distance(from, to) < 1e-6 {
-        return Err(input_missing(path, "has zero length: from_mm and to_mm coincide", "give two different points"));
-    }
+    let remedy = "give two different points";
+    fail_if!(distance(from, to) < 1e-6, input_missing(path, "has zero length: from_mm and to_mm coincide", remedy));
     Ok((from, to))
 }

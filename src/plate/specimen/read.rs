@@ -19,7 +19,6 @@ pub const PART_THROUGH: &[&str] = &[
     "surface_crack_at_hole",
 ];
 
-/// Keys that only such a flaw has.
 const PART_THROUGH_KEYS: &[&str] = &[
     "crack_depth_mm",
     "crack_half_length_mm",
@@ -31,7 +30,6 @@ const PART_THROUGH_KEYS: &[&str] = &[
     "corner_radius_mm",
 ];
 
-/// What to give for a flaw that does not go through.
 fn give_a_kind() -> String {
     let known: Vec<&str> =
         SpecimenKind::ALL.iter().filter(|kind| kind.part_through().is_some()).map(|kind| kind.name()).collect();
@@ -65,7 +63,6 @@ impl SpecimenKind {
         matches!(self, SpecimenKind::MiddleTension | SpecimenKind::Cruciform)
     }
 
-    /// What is wrong with the keys of its section by themselves.
     fn mistakes(self, given: Given<'_>) -> Vec<InputError> {
         let all: Vec<_> = SpecimenKind::ALL.iter().map(|kind| (kind.name(), kind.keys())).collect();
         keys::mistakes(

@@ -41,15 +41,12 @@ perilife_base::keys! {
         thickness: f64 = THICKNESS;
         a: f64 = CRACK_LENGTH.said("Initial crack length a: half of a central crack, that of each edge crack");
     }
-}
-perilife_base::keys! {
     pub(super) struct SingleEdge {
         strip: Strip = part();
         ends: Ends = key("ends", "Ends: clamped, pinned or under uniform stress");
     }
 }
 
-/// A central crack, or two edge cracks.
 pub(super) fn from_value(kind: SpecimenKind, value: &Value) -> Result<Specimen> {
     let Strip { width, length, thickness, a } = Strip::read(&Given::of(value, "specimen")?)?;
     let strip = Specimen::strip(kind, width, length, thickness);
@@ -91,7 +88,6 @@ perilife_base::keys! {
     }
 }
 
-/// C(T).
 pub(super) fn compact_from_value(value: &Value) -> Result<Specimen> {
     let given = Given::of(value, "specimen")?;
     let Compact { w, thickness, a, pin: pin_keys } = Compact::read(&given)?;

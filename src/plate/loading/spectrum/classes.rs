@@ -12,12 +12,10 @@ const WIDTH: f64 = 0.0125;
 /// Order of the mean that a class keeps of the maxima and the ranges in it.
 const ORDER: f64 = 3.5;
 
-/// Cycles of one maximum and one minimum.
+/// Cycles of one maximum and one minimum, both over the largest load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Class {
-    /// Maximum over the largest load.
     pub max: f64,
-    /// Minimum over the largest load.
     pub min: f64,
     /// How many of the cycles of a pass, over all of them.
     pub share: f64,

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use super::content::{Content, RawCycle, SpectrumFormat};
+use super::formats::{Content, RawCycle, SpectrumFormat};
 use perilife_base::error::Result;
 use perilife_base::table::names::{Kind, Named, Role};
 use perilife_base::table::quantities::{Words, in_si, numbers};
@@ -34,7 +34,6 @@ fn ends([max, min, range, mean, ratio]: [Option<f64>; 5]) -> Option<[f64; 2]> {
     })
 }
 
-/// What columns of these roles are.
 fn format_of(roles: &[Role]) -> Option<SpectrumFormat> {
     let has = |role: Role| roles.contains(&role);
     let given = |role: Role| has(role).then_some(1.0);
@@ -48,7 +47,6 @@ fn format_of(roles: &[Role]) -> Option<SpectrumFormat> {
     }
 }
 
-/// Whether a line of names is a header of a spectrum.
 pub(super) fn is_header(line: &str) -> bool {
     let names = line.split([',', ';', '\t', '|']).filter(|name| !name.trim().is_empty());
     let roles: Vec<Role> = names.filter_map(|name| Some(WORDS.role(name)?.0)).collect();
@@ -110,7 +108,6 @@ pub(super) fn read(
 struct Read {
     index: usize,
     role: Role,
-    /// What its numbers are multiplied by.
     factor: f64,
 }
 
@@ -172,10 +169,10 @@ fn refuse_pairs(table: &Table) -> Result<()> {
     let Some(first) = table.rows.first().filter(|_| table.rows.iter().all(|row| row.cell(0).contains(','))) else {
         return Ok(());
     };
-    Err(Fault { line: Some(first.line), value: Some(first.cell(0)), ..whole_file(&table.file) }.error(
-        "ambiguous: two columns, or one with decimal commas",
-        "set loading.spectrum_format = \"cycles\" (maximum, minimum) or \"turning_points\" (decimal commas), or name the columns",
-    ))
+    let remedy =
+        "set loading.spectrum_format = \"cycles\" (maximum, minimum) or \"turning_points\" (decimal commas), or name the columns";
+    let fault = Fault { line: Some(first.line), value: Some(first.cell(0)), ..whole_file(&table.file) };
+    Err(fault.error("ambiguous: two columns, or one with decimal commas", remedy))
 }
 
 fn nameless(table: &Table) -> perilife_base::error::Error {
@@ -187,13 +184,11 @@ fn nameless(table: &Table) -> perilife_base::error::Error {
     };
     let fault = Fault { line, key: Some("row"), value: shown.as_deref(), ..whole_file(&table.file) };
     let count = table.header.len();
-    fault.error(
-        format!("has {count} {} without a known name", if count == 1 { "column" } else { "columns" }),
-        format!("{REMEDY}; or set loading.spectrum_format = \"cycles\" for the columns maximum, minimum, cycles"),
-    )
+    let columns = if count == 1 { "column" } else { "columns" };
+    let remedy = format!("{REMEDY}; or set loading.spectrum_format = \"cycles\" for the columns maximum, minimum, cycles");
+    fault.error(format!("has {count} {columns} without a known name"), remedy)
 }
 
-/// Refuses lines of numbers above the table, which would be lost, but a number of its rows.
 fn check_preamble(table: &Table) -> Result<()> {
     let title = (table.header_line, table.header.join(" "));
     for (line, text) in table.preamble.iter().chain([&title]).filter(|(line, _)| *line > 0) {

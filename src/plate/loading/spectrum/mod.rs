@@ -5,16 +5,12 @@
 
 mod classes;
 mod columns;
-mod content;
-mod fastran;
+mod formats;
 pub mod rainflow;
 mod read;
-mod rows;
-mod spx;
-mod sub;
 
 pub use classes::Class;
-pub use content::SpectrumFormat;
+pub use formats::SpectrumFormat;
 
 use std::fmt;
 
@@ -25,12 +21,10 @@ pub const WHOLE: f64 = 1e-6;
 /// Times that a cycle comes in a period, in the mean, from which periods are alike although it comes once more or less.
 const OFTEN: f64 = 10.0;
 
-/// Loads that come again and again: from a minimum to a maximum, so many times.
+/// Loads that come again and again: from a minimum to a maximum, both over the largest of the spectrum, so many times.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cycle {
-    /// Largest load over the largest of the spectrum; at most 1.
     pub max: f64,
-    /// Smallest load over the same; below `max`.
     pub min: f64,
     /// How often it comes in a pass, one after the other; below 1 of one that is not in every pass.
     pub count: f64,
@@ -52,7 +46,6 @@ impl Cycle {
 #[derive(Clone, PartialEq)]
 pub struct Spectrum {
     pub file: String,
-    /// How the file was read.
     pub format: SpectrumFormat,
     /// Cycles in their order; turning points give a cycle the place of its maximum.
     pub cycles: Vec<Cycle>,
@@ -72,7 +65,6 @@ pub struct Spectrum {
     pub classes: Vec<Class>,
     /// How many kinds of cycles there are: pairs of maximum and minimum that differ.
     pub kinds: usize,
-    /// What the user should know of its file.
     pub notes: Vec<String>,
     sha256: String,
 }
@@ -96,7 +88,6 @@ impl Spectrum {
         self.cycles.iter().filter(|cycle| cycle.count * self.period < OFTEN && !is_whole(cycle.count, self.period))
     }
 
-    /// Smallest load over the largest.
     pub fn smallest(&self) -> f64 {
         self.cycles.iter().map(|cycle| cycle.min).fold(f64::INFINITY, f64::min)
     }

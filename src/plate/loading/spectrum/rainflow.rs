@@ -1,6 +1,5 @@
 //! Cycles of a history of loads that repeats, by rainflow counting, ASTM E1049-85 (2017), 5.4.5 (ISO 12110-2:2013, A.3.3.3).
 
-/// A cycle that was counted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RainflowCycle {
     pub max: f64,

@@ -4,12 +4,11 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use super::classes::{classes, kinds};
-use super::content::{Content, RawCycle, SpectrumFormat};
+use super::formats::{self, Content, RawCycle, SpectrumFormat, fault, rows};
 use super::rainflow::rainflow;
-use super::rows::{fault, rows};
-use super::{Cycle, PERIOD_MOST, Spectrum, columns, fastran, is_whole, spx, sub};
+use super::{Cycle, PERIOD_MOST, Spectrum, columns, is_whole};
 use crate::loading::Input;
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::Folder;
 use perilife_base::keys::Plain;
 use perilife_base::table::units::{LoadUnit, Unit};
@@ -52,19 +51,14 @@ impl Spectrum {
     /// Errors: no cycle whose maximum is above zero.
     pub fn of(cycles: Vec<Cycle>, [omission, truncation]: [f64; 2]) -> Result<Spectrum> {
         let most = cycles.iter().map(|cycle| cycle.max).fold(f64::NEG_INFINITY, f64::max);
-        if most <= 0.0 {
-            let problem = "contains no tensile load";
-            return Err(input("max", most, problem, "give tension as positive values"));
-        }
+        fail_if!(most <= 0.0, input("max", most, "contains no tensile load", "give tension as positive values"));
         let cut = most * truncation;
         let share = |cycle: Cycle| Cycle { max: cycle.max.min(cut) / cut, min: cycle.min / cut, ..cycle };
         // A cycle above the cut is gone with it.
         let mut left: Vec<Cycle> = cycles.into_iter().map(share).filter(|cycle| cycle.max > cycle.min).collect();
         let top = left.iter().map(|cycle| cycle.max).fold(0.0, f64::max);
-        if top <= 0.0 {
-            let problem = "omits every tensile cycle";
-            return Err(input("loading.truncation_percent", 100.0 * truncation, problem, "change the level, or remove it"));
-        }
+        let problem = "omits every tensile cycle";
+        fail_if!(top <= 0.0, input("loading.truncation_percent", 100.0 * truncation, problem, "change the level, or remove it"));
         // The largest may be gone with the cut.
         left.iter_mut().for_each(|cycle| (cycle.max, cycle.min) = (cycle.max / top, cycle.min / top));
         let cut = cut * top;
@@ -93,7 +87,6 @@ impl Spectrum {
     }
 }
 
-/// Fewest passes in which all cycles come a whole number of times.
 fn period(cycles: &[Cycle]) -> f64 {
     let mut fractions: Vec<f64> = cycles.iter().map(|cycle| cycle.count).filter(|count| count.fract() != 0.0).collect();
     fractions.sort_by(f64::total_cmp);
@@ -120,13 +113,13 @@ fn content(
         "spx" => Some(SpectrumFormat::Spx),
         "sub" => Some(SpectrumFormat::Sub),
         _ if first.starts_with('<') => Some(SpectrumFormat::Spx),
-        _ if fastran::is_of(first, second) => Some(SpectrumFormat::Fastran),
+        _ if formats::is_fastran(first, second) => Some(SpectrumFormat::Fastran),
         _ => None,
     });
     let content = match format {
-        Some(SpectrumFormat::Spx) => spx::read(&text)?,
-        Some(SpectrumFormat::Sub) => sub::read(rows(&text))?,
-        Some(SpectrumFormat::Fastran) => fastran::read(rows(&text))?,
+        Some(SpectrumFormat::Spx) => formats::spx(&text)?,
+        Some(SpectrumFormat::Sub) => formats::sub(rows(&text))?,
+        Some(SpectrumFormat::Fastran) => formats::fastran(rows(&text))?,
         Some(SpectrumFormat::Cycles | SpectrumFormat::TurningPoints) | None => {
             return columns::read(without_remarks(&text).as_bytes(), file, format, scale);
         }
@@ -155,10 +148,8 @@ fn cycles_of(content: Content, notes: &mut Vec<String>) -> Result<Vec<Cycle>> {
     let mut cycles = Vec::with_capacity(raw.len());
     let mut passed_over: Vec<usize> = Vec::new();
     for RawCycle { line, max, min, count } in raw {
-        if min > max {
-            let remedy = "give the maximum first; for peaks and valleys in time order set spectrum_format = \"turning_points\"";
-            return Err(fault(Some(line), "min", &min.to_string(), &format!("is above the maximum {max}"), remedy));
-        }
+        let remedy = "give the maximum first; for peaks and valleys in time order set spectrum_format = \"turning_points\"";
+        fail_if!(min > max, fault(Some(line), "min", &min.to_string(), &format!("is above the maximum {max}"), remedy));
         if !(0.0..=1e15).contains(&count) {
             return Err(fault(
                 Some(line),
@@ -174,10 +165,8 @@ fn cycles_of(content: Content, notes: &mut Vec<String>) -> Result<Vec<Cycle>> {
             cycles.push(Cycle { max, min, count });
         }
     }
-    if cycles.is_empty() {
-        let problem = "contains no cycles: no row has a range and a count above 0";
-        return Err(input_missing("spectrum", problem, "give at least one row max, min, cycles with a range"));
-    }
+    let problem = "contains no cycles: no row has a range and a count above 0";
+    fail_if!(cycles.is_empty(), input_missing("spectrum", problem, "give at least one row max, min, cycles with a range"));
     if let Some(first) = passed_over.first() {
         let rows = if passed_over.len() == 1 { "1 row is".to_owned() } else { format!("{} rows are", passed_over.len()) };
         notes.push(format!("{rows} omitted: no range or a count of 0 (first: line {first})"));
@@ -189,10 +178,8 @@ fn cycles_of(content: Content, notes: &mut Vec<String>) -> Result<Vec<Cycle>> {
 /// zone is made.
 fn of_points(points: &[f64]) -> Result<Vec<Cycle>> {
     let mut counted = rainflow(points);
-    if counted.is_empty() {
-        let problem = "is too few: a cycle needs a maximum and a minimum";
-        return Err(input("turning points", points.len(), problem, "give at least two loads that differ"));
-    }
+    let problem = "is too few: a cycle needs a maximum and a minimum";
+    fail_if!(counted.is_empty(), input("turning points", points.len(), problem, "give at least two loads that differ"));
     counted.sort_by_key(|cycle| cycle.places);
     Ok(counted.iter().map(|cycle| Cycle { max: cycle.max, min: cycle.min, count: 1.0 }).collect())
 }

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::specimen::Point;
 use crate::specimen::geometry::{along, circle_shares, distance, meeting_share};
+use perilife_base::error::fail_if;
 
 /// Turn of an arc from one corner of its polyline to the next at the most, rad: 2.5°. Corners lie on the arc, and chords within
 /// r (1 - cos 1.25°) = 2.4e-4 radii of it.
@@ -11,18 +12,15 @@ pub const TURN: f64 = TAU / 144.0;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arc {
-    /// m.
     pub centre: Point,
     /// Angle that it turns by, rad, positive counter-clockwise.
     pub sweep: f64,
 }
 
-/// A piece of a curve, from the end of the one before it.
+/// A piece of a curve, from the end of the one before it to a place, m: an arc, or straight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
-    /// Its end, m.
     pub to: Point,
-    /// The arc that it is; else it is straight.
     pub arc: Option<Arc>,
 }
 
@@ -32,10 +30,8 @@ impl Piece {
     }
 }
 
-/// Pieces end to end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// Its start, m.
     pub from: Point,
     /// In order; at least one.
     pub pieces: Vec<Piece>,
@@ -226,9 +222,7 @@ pub fn chained(mut curves: Vec<Curve>, tolerance: f64, may_meet: impl Fn(Point) 
                     |curve: &Curve| !curve.is_closed(tolerance) && (is_near(curve.from, end) || is_near(curve.end(), end));
                 let mut next = (0..curves.len()).filter(|&curve| meets(&curves[curve]));
                 let Some(first) = next.next() else { break };
-                if next.next().is_some() {
-                    return Err(end);
-                }
+                fail_if!(next.next().is_some(), end);
                 let next = curves.remove(first);
                 let next = if is_near(next.from, end) { next } else { next.reversed() };
                 chain.end_at(joint(&chain, &next, tolerance));

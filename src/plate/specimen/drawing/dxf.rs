@@ -6,27 +6,19 @@
 use super::curve::{Arc, Curve, Piece, bulged};
 use super::{Drawing, Drawn, Fault, known_layer, place};
 use crate::specimen::Point;
+use perilife_base::error::fail_if;
 
-/// What to do with an entity that is none of these.
 const DRAW_IT: &str = "draw it as one of them; delete it only if it is not part of the plate (text, dimensions)";
-/// Entities that say nothing of a shape.
 const SILENT: [&str; 2] = ["SEQEND", "VIEWPORT"];
 /// Flags of a polyline: closed; one fitted by curves or splines; one in space or a mesh.
 const CLOSED: i64 = 1;
-/// See [`CLOSED`].
 const FITTED: i64 = 2 | 4;
-/// See [`CLOSED`].
 const IN_SPACE: i64 = 8 | 16 | 64;
-
-/// Flag of a layer that is frozen.
 const FROZEN: i64 = 1;
 /// Size of a coordinate that is round-off, in units of the drawing.
 const ROUND_OFF: f64 = 1e-6;
-
-/// A group: code, value, line of the value.
 type Group<'t> = (i64, &'t str, usize);
 
-/// An entity: its type, its line and its groups.
 struct Entity<'t> {
     kind: &'t str,
     line: usize,
@@ -36,9 +28,7 @@ struct Entity<'t> {
 /// Reads a file; millimetres of a unit by `$INSUNITS`.
 /// Errors: text that is no DXF; entities that are no plain lines.
 pub fn read(text: &str) -> Result<Drawing, Fault> {
-    if text.starts_with("AutoCAD Binary DXF") {
-        return Err(Fault::of("is a binary DXF", "save it as ASCII DXF"));
-    }
+    fail_if!(text.starts_with("AutoCAD Binary DXF"), Fault::of("is a binary DXF", "save it as ASCII DXF"));
     let groups = groups(text)?;
     let unit = groups.windows(2).find(|pair| pair[0].1 == "$INSUNITS").map(|pair| pair[1].1);
     let millimetres = match unit.unwrap_or("0") {
@@ -86,9 +76,8 @@ fn groups(text: &str) -> Result<Vec<Group<'_>>, Fault> {
             break;
         }
     }
-    if !groups.iter().any(|group| (group.0, group.1) == (0, "EOF")) {
-        return Err(Fault::of("ends before its end mark EOF", "save it again as ASCII DXF (the file is truncated)"));
-    }
+    let remedy = "save it again as ASCII DXF (the file is truncated)";
+    fail_if!(!groups.iter().any(|group| (group.0, group.1) == (0, "EOF")), Fault::of("ends before its end mark EOF", remedy));
     Ok(groups)
 }
 
@@ -111,7 +100,6 @@ fn hidden_layers<'t>(groups: &[Group<'t>]) -> Vec<(&'t str, &'static str)> {
     records.filter_map(hidden).collect()
 }
 
-/// Those of the section ENTITIES.
 fn entities<'t>(groups: &[Group<'t>]) -> Vec<Entity<'t>> {
     let begins = |pair: &[Group<'_>]| pair[0].1 == "SECTION" && (pair[1].0, pair[1].1) == (2, "ENTITIES");
     let first = groups.windows(2).position(begins).map_or(groups.len(), |at| at + 2);
@@ -139,9 +127,7 @@ impl Entity<'_> {
     /// Refuses what a viewer does not show: it might be meant or not.
     fn check_shown(&self, hidden: &[(&str, &str)]) -> Result<(), Fault> {
         const REMEDY: &str = "show it if it is part of the plate, else delete it";
-        if self.number(60)? == Some(1.0) {
-            return Err(self.refused("is hidden (group code 60)", REMEDY));
-        }
+        fail_if!(self.number(60)? == Some(1.0), self.refused("is hidden (group code 60)", REMEDY));
         match hidden.iter().find(|(layer, _)| layer.eq_ignore_ascii_case(self.layer_name())) {
             Some((_, why)) => Err(self.refused(why, REMEDY)),
             None => Ok(()),
@@ -157,19 +143,14 @@ impl Entity<'_> {
             let values = groups.map(|group| self.value(group)).collect::<Result<Vec<_>, Fault>>()?;
             Ok::<_, Fault>(values.into_iter().find(|value| value.abs() > ROUND_OFF))
         };
-        if self.number(230)?.is_some_and(|z| z < 0.0) {
-            return Err(self.refused("has extrusion -z", REMEDY));
-        }
-        if first_not(&[210, 220])?.is_some() {
-            return Err(self.refused("is drawn in a tilted plane (extrusion not along z)", REMEDY));
-        }
+        fail_if!(self.number(230)?.is_some_and(|z| z < 0.0), self.refused("has extrusion -z", REMEDY));
+        fail_if!(first_not(&[210, 220])?.is_some(), self.refused("is drawn in a tilted plane (extrusion not along z)", REMEDY));
         match first_not(&[30, 31, 38])? {
             Some(z) => Err(self.refused(&format!("is at z = {z}"), REMEDY)),
             None => Ok(()),
         }
     }
 
-    /// The first value of a code.
     fn number(&self, code: i64) -> Result<Option<f64>, Fault> {
         self.groups.iter().find(|group| group.0 == code).map(|group| self.value(group)).transpose()
     }
@@ -205,7 +186,6 @@ impl Entity<'_> {
         Fault::at(&self.layer(), &self.words(), problem, remedy)
     }
 
-    /// Its curve; `vertices` follow a POLYLINE.
     fn curve(&self, vertices: &[Entity<'_>]) -> Result<Curve, Fault> {
         let circle = |entity: &Self| Ok::<_, Fault>((entity.point(10)?, entity.needed(40)?));
         match self.kind {
@@ -243,7 +223,6 @@ impl Entity<'_> {
         }
     }
 
-    /// Corners with the bulges behind them.
     fn polyline(&self, corners: &[(Point, f64)]) -> Result<Curve, Fault> {
         let flags = self.number(70)?.unwrap_or(0.0) as i64;
         if self.kind == "POLYLINE" && flags & (FITTED | IN_SPACE) != 0 {

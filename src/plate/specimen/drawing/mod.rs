@@ -16,12 +16,11 @@ use curve::{Curve, branched, chained};
 
 use super::geometry::{bounding_box, distance, distance_to_segment, polygon_area, turn};
 use super::{Hole, Point};
-use perilife_base::error::{Error, Result, input, input_missing};
+use perilife_base::error::{Error, Result, fail_if, input, input_missing};
 use perilife_base::input::Folder;
 use perilife_base::units::{INCH, MM, place_mm};
 
 pub const KEY: &str = "specimen.outline_file";
-/// Layers that a drawing may have.
 const LAYERS: [&str; 3] = ["outline", "holes", "cracks"];
 /// Distance of ends that are one, over the size of the drawing.
 const TOLERANCE: f64 = 1e-4;
@@ -40,9 +39,7 @@ perilife_base::kinds! {
         Millimetre = "mm": "drawing unit: millimeter",
         Inch = "inch": "drawing unit: inch",
     }
-}
 
-perilife_base::kinds! {
     /// Planes of symmetry of a plate of which a half is drawn.
     pub enum SymmetryPlane for "specimen.outline_symmetry" {
         X = "x=0": "the half on one side of x = 0 is drawn",
@@ -53,7 +50,6 @@ perilife_base::kinds! {
 /// What a drawing says of a plate, m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shape {
-    /// Corners in order around the plate.
     pub outline: Vec<Point>,
     pub holes: Vec<Hole>,
     pub cracks: Vec<Vec<Point>>,
@@ -66,14 +62,12 @@ pub(super) struct Drawing {
     millimetres: Option<f64>,
 }
 
-/// A line of a file.
 pub(super) struct Drawn {
     layer: String,
     what: String,
     curve: Curve,
 }
 
-/// What is wrong with a drawing, and what to do.
 pub(super) struct Fault {
     problem: String,
     remedy: String,
@@ -98,7 +92,6 @@ fn known_layer(name: &str) -> Option<&'static str> {
     LAYERS.into_iter().find(|layer| layer.eq_ignore_ascii_case(name))
 }
 
-/// A place in words, in the unit that it is given in.
 fn place([x, y]: Point) -> String {
     let round = |value: f64| (value * 1e4).round() / 1e4 + 0.0;
     format!("({}, {})", round(x), round(y))
@@ -109,16 +102,13 @@ fn place([x, y]: Point) -> String {
 pub fn read(file: &str, folder: &Folder, unit: Option<DrawingUnit>, symmetry: Option<SymmetryPlane>) -> Result<Shape> {
     let bytes = folder.read(file)?;
     let text = String::from_utf8_lossy(&bytes);
-    if !file.to_lowercase().ends_with(".dxf") {
-        let remedy = "save it as DXF: round holes as circles on layer holes, rounded corners as arcs";
-        return Err(Fault::of("is not a DXF drawing", remedy).error(file));
-    }
+    let remedy = "save it as DXF: round holes as circles on layer holes, rounded corners as arcs";
+    fail_if!(!file.to_lowercase().ends_with(".dxf"), Fault::of("is not a DXF drawing", remedy).error(file));
     let drawing = dxf::read(&text).map_err(|fault| fault.error(file))?;
     let scale = scale(drawing.millimetres, unit, file)?;
     shape(drawing.lines, scale, symmetry).map_err(|fault| fault.error(file))
 }
 
-/// Metres in a unit of the drawing.
 fn scale(millimetres: Option<f64>, unit: Option<DrawingUnit>, file: &str) -> Result<f64> {
     const UNIT: &str = "specimen.outline_unit";
     let given = unit.map(|unit| (unit, if unit == DrawingUnit::Inch { INCH } else { MM }));
@@ -141,15 +131,12 @@ fn shape(lines: Vec<Drawn>, scale: f64, symmetry: Option<SymmetryPlane>) -> std:
         let known = format!("move it to one of {} if it is part of the plate, else delete it", LAYERS.join(", "));
         return Err(Fault::at(&format!("\"{}\"", line.layer), &line.what, "is on an unknown layer", known));
     }
-    if lines.len() > LINES_MAX {
-        return Err(Fault::of(format!("has {} lines", lines.len()), format!("draw at most {LINES_MAX}")));
-    }
+    fail_if!(lines.len() > LINES_MAX, Fault::of(format!("has {} lines", lines.len()), format!("draw at most {LINES_MAX}")));
     let lines: Vec<Drawn> =
         lines.into_iter().map(|line| Drawn { curve: line.curve.mapped(|at| at.map(|x| scale * x), false), ..line }).collect();
     let corners: Vec<Point> = lines.iter().flat_map(|line| line.curve.points()).collect();
-    if !lines.iter().any(|line| line.layer == "outline") {
-        return Err(Fault::of("has nothing on the layer outline", "draw the outline of the plate on a layer of that name"));
-    }
+    let remedy = "draw the outline of the plate on a layer of that name";
+    fail_if!(!lines.iter().any(|line| line.layer == "outline"), Fault::of("has nothing on the layer outline", remedy));
     let [low, high] = bounding_box(&corners);
     let size = (high[0] - low[0]).max(high[1] - low[1]);
     let tolerance = TOLERANCE * size;
@@ -277,10 +264,9 @@ fn mirrored(lines: Vec<Drawn>, axis: usize, tolerance: f64) -> std::result::Resu
             continue;
         }
         for at in line.curve.points().into_iter().filter(|at| !is_on(*at)) {
-            if side * at[axis] < 0.0 {
-                let problem = format!("is beyond {plane}; the half is drawn on the other side");
-                return Err(Fault::at(&line.layer, &line.what, problem, "draw one half, or remove outline_symmetry"));
-            }
+            let problem = || format!("is beyond {plane}; the half is drawn on the other side");
+            let remedy = "draw one half, or remove outline_symmetry";
+            fail_if!(side * at[axis] < 0.0, Fault::at(&line.layer, &line.what, problem(), remedy));
             side = at[axis];
         }
         let drawn = |curve: Curve| Drawn { layer: line.layer.clone(), what: line.what.clone(), curve };

@@ -17,16 +17,12 @@ const CHAIN_MOST: usize = 2;
 const NEIGHBOURS: usize = 3;
 /// Angles outwards from the force of a pin at which it may shear out, in degrees.
 const SHEARED: [f64; 13] = [0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0];
-/// Rounds in which both ends of a section are chosen in turn.
 const ROUNDS_MOST: usize = 4;
 
-/// A line from rim to rim.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Cut {
     pub points: Vec<Point>,
-    /// What is left of the material on it.
     pub ligaments: Vec<[Point; 2]>,
-    /// Pieces along cracks.
     pub cracked: Vec<[Point; 2]>,
 }
 
@@ -40,7 +36,6 @@ impl Cut {
         }
     }
 
-    /// One cut and then another, which begins where it ends.
     fn joined(mut self, other: &Cut) -> Cut {
         self.points.extend(other.points.iter().skip(usize::from(!self.points.is_empty())));
         self.ligaments.extend(&other.ligaments);
@@ -119,7 +114,6 @@ fn side_of_pin(plate: &Plate<'_>, hole: usize, ahead: Point, side: f64) -> Point
     [hole.centre[0] - side * hole.radius * ahead[1], hole.centre[1] + side * hole.radius * ahead[0]]
 }
 
-/// Ways from a side of a hole to the outline ahead of its pin.
 fn sheared(plate: &Plate<'_>, at: Point, ahead: Point, side: f64) -> Vec<Cut> {
     let turned = |degrees: f64| {
         let (sine, cosine) = (side * degrees.to_radians()).sin_cos();
@@ -154,7 +148,6 @@ fn of_ends(plate: &Plate<'_>, before: &[Cut], middle: &Cut, behind: &[Cut], load
     }
 }
 
-/// Ways from an end of a crack to the outline.
 fn exits(plate: &Plate<'_>, line: usize, at_last: bool, visited: &mut Vec<usize>) -> Vec<Cut> {
     let (crack, specimen) = (&plate.cracks[line], plate.specimen);
     let (at, ahead) = (crack.end(at_last), crack.direction(at_last));

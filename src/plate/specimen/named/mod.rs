@@ -44,7 +44,6 @@ pub struct SpecimenSpec {
     /// Its name in `specimen.kind`.
     pub kind: SpecimenKind,
     keys: &'static [Key],
-    /// From its keys to what it is drawn from.
     layout: fn(&Given<'_>) -> Result<Layout>,
 }
 
@@ -54,7 +53,6 @@ impl SpecimenSpec {
     }
 }
 
-/// A named plate before it is built.
 #[derive(Default)]
 struct Layout {
     drawing: Drawing,
@@ -108,9 +106,7 @@ pub(super) fn from_value(description: &SpecimenSpec, value: &Value, notes: &mut 
     Ok(Specimen { loads, supports, crack_length, convention, load_measure, own_formula: formula, ..plate })
 }
 
-/// What a `plate` says of its cracks and holes begins like this.
 const CRACKS: &str = "specimen.cracks[";
-/// See [`CRACKS`].
 const HOLES: &str = "specimen.holes[";
 
 /// What a `plate` refuses, by the keys of a kind: its cracks by that of their lengths, its holes by their diameter.

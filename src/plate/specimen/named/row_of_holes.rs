@@ -47,7 +47,6 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
     Ok(Layout { drawing, crack_length: shared, ..Layout::default() })
 }
 
-/// Lengths of the cracks of every hole, [left, right], m.
 fn lengths(given: &Given<'_>, own: &Keys) -> Result<Vec<[f64; 2]>> {
     const KEY: &str = "crack_lengths_mm";
     const REMEDY: &str = "give crack_length_mm of all cracks, or crack_lengths_mm = [[left, right], ...], 0 without a crack";

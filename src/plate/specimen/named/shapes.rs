@@ -30,9 +30,7 @@ pub(super) fn roller([from, to]: [Point; 2], direction: Point, share: f64, thick
     Load::Edge { from, to, traction: direction.map(|d| pressure * d) }
 }
 
-/// What the lengths of cracks at holes say.
 pub(super) const LENGTHS: &str = "the length of the cracks";
-/// Length of all cracks at holes.
 pub(super) const FROM_RIM: Key = length("crack_length_mm", "Initial crack length a: from the hole edge").group(LENGTHS);
 
 perilife_base::keys! {
@@ -48,7 +46,6 @@ perilife_base::keys! {
 pub(super) struct AtHole {
     /// Their lengths from the rim, m; 0 without one.
     pub lengths: [f64; 2],
-    /// The one length of all of them.
     pub shared: Option<f64>,
 }
 
@@ -67,7 +64,6 @@ impl AtHole {
         }
     }
 
-    /// Number of cracks.
     pub(super) fn count(&self) -> usize {
         self.lengths.iter().filter(|length| **length > 0.0).count()
     }

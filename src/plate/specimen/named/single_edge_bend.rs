@@ -11,12 +11,11 @@ use crate::specimen::handbook::HandbookFormula;
 use crate::specimen::keys::{CRACK_LENGTH, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::Drawing;
 use crate::specimen::{Load, SpecimenKind};
-use perilife_base::error::{Result, input as error};
+use perilife_base::error::{Result, fail_if, input as error};
 use perilife_base::keys::{Given, Section, length};
 use perilife_base::units::round_mm;
 
 pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::SingleEdgeBend, keys: Keys::KEYS, layout };
-
 /// Width of a contact over W.
 const CONTACT: f64 = 0.05;
 /// Span over W of the standards.
@@ -45,10 +44,8 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
         let problem = format!("is too short for the span of {} mm and a contact", round_mm(span));
         return Err(error("specimen.length_mm", round_mm(length), problem, "give a longer beam, or span_mm"));
     }
-    if span <= 2.0 * contact {
-        let problem = format!("must be above two contacts, {} mm", round_mm(2.0 * contact));
-        return Err(error("specimen.span_mm", round_mm(span), problem, "give a longer one"));
-    }
+    let problem = || format!("must be above two contacts, {} mm", round_mm(2.0 * contact));
+    fail_if!(span <= 2.0 * contact, error("specimen.span_mm", round_mm(span), problem(), "give a longer one"));
     inner.map_or(Ok(()), |inner| below("inner_span_mm", inner, span - 2.0 * contact, "the span less two contacts"))?;
     let at = |x: f64, y: f64, share: f64| {
         // As the outline runs: up behind the crack, down at the edge where it starts.

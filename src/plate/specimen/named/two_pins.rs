@@ -23,11 +23,9 @@ pub(super) const ECCENTRIC: SpecimenSpec =
 pub(super) const WEDGE: SpecimenSpec =
     SpecimenSpec { kind: SpecimenKind::WedgeOpening, keys: Keys::KEYS, layout: |given| layout(given, &WOL) };
 
-/// What differs between the two.
 struct Kind {
     /// What W is, in words.
     width: &'static str,
-    /// Half height over W.
     half_height: f64,
     /// x of the edge where the crack starts, over W.
     front: f64,

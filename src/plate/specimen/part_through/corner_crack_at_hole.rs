@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::front::{CrackFront, secant};
-use super::surface_crack::series;
+use super::plain::series;
 use super::{Limit, PartThroughSpec, PlateLetters, SHAPE};
 use crate::specimen::SpecimenKind;
 
@@ -26,7 +26,6 @@ pub(super) const KIND: PartThroughSpec = PartThroughSpec {
 /// Share μ of φ that the stress beside the hole is taken at.
 const TURN: f64 = 0.85;
 
-/// `F` under tension.
 fn tension(front: &CrackFront, angle: f64) -> f64 {
     shared(front, angle, TURN)
 }
@@ -53,7 +52,6 @@ fn width(&CrackFront { a, c, t, b, r, n }: &CrackFront) -> f64 {
     (secant(PI * r / (2.0 * b)) * secant(crack)).sqrt()
 }
 
-/// The factor of Shah; 1 of two cracks.
 fn single(&CrackFront { a, c, t, r, n, .. }: &CrackFront) -> f64 {
     let area = a * c / (t * r);
     if n > 1.0 { 1.0 } else { ((4.0 / PI + 0.5 * area) / (4.0 / PI + area)).sqrt() }

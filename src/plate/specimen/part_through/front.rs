@@ -2,7 +2,6 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Where K of a front is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FrontTip {
     /// The end of the semi-axis a, φ = 90°: deepest point of a surface crack, on the edge or in the hole of a corner crack.
@@ -30,12 +29,10 @@ impl FrontTip {
     }
 }
 
-/// A part of an ellipse as crack front, m.
+/// A part of an ellipse as crack front, m, with the semi-axes a through the thickness and c along the width.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrackFront {
-    /// Semi-axis through the thickness.
     pub a: f64,
-    /// Semi-axis along the width.
     pub c: f64,
     /// Thickness; half of it of an embedded crack.
     pub t: f64,
@@ -48,12 +45,10 @@ pub struct CrackFront {
 }
 
 impl CrackFront {
-    /// Aspect ratio a/c.
     pub fn aspect(&self) -> f64 {
         self.a / self.c
     }
 
-    /// Depth a/t.
     pub fn depth(&self) -> f64 {
         self.a / self.t
     }

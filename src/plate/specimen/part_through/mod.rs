@@ -5,15 +5,13 @@
 //! loads"). Fitted to finite elements, they are within 5 % of them where a/t ≤ 0.8, 0.2 ≤ a/c ≤ 2 and the crack takes less than half of the
 //! width, but for a thin layer at a free surface; corrections for width are estimates. K is read at the ends of both axes, φ = 90° and 0.
 //!
-//! A file of the folder holds all that is said of one kind. A new one is such a file, its `mod` and place in `KINDS`, and its name in
+//! A kind is all that a `PartThroughSpec` says of it, in `plain` or a file of its own. A new one has its place in `KINDS` and its name in
 //! [`SpecimenKind`].
 
-mod corner_crack;
 mod corner_crack_at_hole;
-mod embedded_crack;
 mod front;
+mod plain;
 mod read;
-mod surface_crack;
 mod through;
 
 pub use front::{CrackFront, FrontTip};
@@ -23,18 +21,13 @@ use std::f64::consts::PI;
 
 use super::{Specimen, SpecimenKind};
 
-const KINDS: &[&PartThroughSpec] =
-    &[&surface_crack::KIND, &corner_crack::KIND, &embedded_crack::KIND, &corner_crack_at_hole::KIND];
+const KINDS: &[&PartThroughSpec] = &[&plain::SURFACE, &plain::CORNER, &plain::EMBEDDED, &corner_crack_at_hole::KIND];
 
 /// Relative error of K that its source states.
 pub const STATED_ERROR: f64 = 0.05;
-/// Where K comes from, in words.
 pub const SOURCE: &str = "Newman and Raju 1984, NASA TM-85793";
-
 /// When a crack is through and what it is then, in words.
 pub const BREAK_THROUGH: &str = "breakthrough at a/t = 1; then a straight through crack of length c";
-
-/// How well, in words.
 pub const RANGE: &str = "5 % for a/t ≤ 0.8, a/c = 0.2 to 2, crack < half of the width";
 
 pub struct PartThroughSpec {
@@ -72,7 +65,6 @@ struct PlateLetters {
     of_width: f64,
 }
 
-/// A range for which formulas are made.
 #[derive(Debug, Clone, Copy)]
 pub struct Limit {
     pub name: &'static str,
@@ -88,12 +80,10 @@ impl Limit {
     }
 }
 
-/// Ranges of every kind.
 const SHAPE: [Limit; 2] = [
     Limit { name: "a/t", of: CrackFront::depth, low: 0.0, high: 0.8 },
     Limit { name: "a/c", of: CrackFront::aspect, low: 0.2, high: 2.0 },
 ];
-/// Ranges of cracks in the middle of the width.
 const CENTRAL: &[Limit] =
     &[SHAPE[0], SHAPE[1], Limit { name: "c/half width", of: |front| front.c / front.b, low: 0.0, high: 0.5 }];
 /// Slack of a range: 0.8 of 6.35 mm is 0.8 less a rounding.
@@ -109,7 +99,6 @@ pub struct PartThrough {
     pub half_length: f64,
     pub thickness: f64,
     pub width: f64,
-    /// Radius of the hole; 0 without one.
     pub radius: f64,
     /// Cracks in the section: at a hole 1 or 2, else 1.
     pub cracks: usize,

@@ -7,7 +7,7 @@ use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::placement::check_holes;
 use crate::specimen::plate::{HoleKeys, read_holes};
 use crate::specimen::{Hole, Specimen};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::keys::{Given, Key, Section, key, length, number, part};
 use perilife_base::units::round_mm;
 
@@ -23,9 +23,6 @@ perilife_base::keys! {
         half_length: f64 = length("crack_half_length_mm", "Surface length c: half length where both ends are on the surface");
         holes: Vec<HoleKeys> = key("holes", "Further holes of the plate"), or "none" Vec::new();
     }
-}
-perilife_base::keys! {
-    /// The same of a crack at a hole.
     pub(super) struct KeysAtHole {
         own: Keys = part();
         diameter: f64 = HOLE_DIAMETER;
@@ -47,10 +44,8 @@ pub(in crate::specimen) fn from_value(
     let given = Given::of(value, "specimen")?;
     let (own, radius, cracks) = if description.has_hole {
         let KeysAtHole { own, diameter, cracks } = KeysAtHole::read(&given)?;
-        if diameter >= own.width {
-            let problem = format!("must be below the width {} mm", round_mm(own.width));
-            return Err(given.refuse(HOLE_DIAMETER.name, problem, "use a smaller hole or a wider plate"));
-        }
+        let problem = || format!("must be below the width {} mm", round_mm(own.width));
+        fail_if!(diameter >= own.width, given.refuse(HOLE_DIAMETER.name, problem(), "use a smaller hole or a wider plate"));
         (own, diameter / 2.0, cracks)
     } else {
         (Keys::read(&given)?, 0.0, 1)
@@ -105,18 +100,13 @@ fn place_beside(flaw: &mut PartThrough, holes: &[Hole]) -> Result<()> {
     Ok(())
 }
 
-/// The crack lies in the section.
 fn check_sizes(flaw: &PartThrough) -> Result<()> {
     let (depth, half_length) = (round_mm(flaw.depth), round_mm(flaw.half_length));
     if flaw.depth >= flaw.through_depth() {
         let (t, half) = (round_mm(flaw.through_depth()), if flaw.through_depth() < flaw.thickness { "half " } else { "" });
         let problem = format!("must be below {half}the thickness, {t} mm (a/t = {:.3})", depth / t);
-        return Err(input(
-            "specimen.crack_depth_mm",
-            depth,
-            problem,
-            "reduce the depth, or use a through crack in kind = \"plate\"",
-        ));
+        let remedy = "reduce the depth, or use a through crack in kind = \"plate\"";
+        return Err(input("specimen.crack_depth_mm", depth, problem, remedy));
     }
     if flaw.half_length >= flaw.room() {
         let room = round_mm(flaw.room());

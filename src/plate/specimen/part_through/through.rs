@@ -7,7 +7,6 @@ use crate::specimen::placement::place_cracks;
 use crate::specimen::{Crack, Point, Specimen, SpecimenKind, TipSeed};
 use perilife_base::error::Result;
 
-/// Straight pieces of a front that is drawn.
 const PARTS: usize = 72;
 
 impl PartThrough {
