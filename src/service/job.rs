@@ -197,6 +197,8 @@ pub fn is_id(id: &str) -> bool {
     uuid::Uuid::try_parse(id).is_ok()
 }
 
+/// Size of the drawing of a plate beside its form.
+const DRAWING: Size = Size { width: 620.0, height: 330.0, text: 12.0 };
 /// Cases of a sweep that are looked at before it is accepted.
 const LOOKED_AT: usize = 100;
 

@@ -252,8 +252,8 @@ async fn listed(app: &App, kind: Option<JobKind>, part: Result<Query<Part>, Quer
     }
     let (archived, after) = (part.archived.unwrap_or(false), part.after.as_deref());
     let listing = app.store.list(Wanted { kind, state: part.state, text, archived, after, limit }).await?;
-    let items =
-        listing.jobs.into_iter().map(|job| JobView { job, files: Vec::new(), inputs: None, input: None, case: None }).collect();
+    let of_list = |job| JobView { job, files: Vec::new(), inputs: None, input: None, options: None, case: None };
+    let items = listing.jobs.into_iter().map(of_list).collect();
     Ok(Json(Page { items, next: listing.next }))
 }
 
