@@ -219,7 +219,7 @@ fn pressure<P: Tried>() {
             tips.iter().map(|tip| [tip.factors.unwrap()[0], tip.factors.unwrap()[1], tip.t_stress.unwrap()]).collect::<Vec<_>>()
         });
         for (pressed, pulled) in pressed.iter().zip(&pulled) {
-            println!("{crack}: pressure {pressed:.3e?}, stress {pulled:.3e?}");
+            println!("{crack}: pressure {pressed:.0?}, stress {pulled:.0?}");
             let size = pulled[0].hypot(pulled[1]);
             assert!((0..2).all(|i| (pressed[i] - pulled[i]).abs() < 0.006 * size), "{crack}: {pressed:?}, {pulled:?}");
             assert!((pressed[2] + 1e6 * along - pulled[2]).abs() < 0.02 * 60e6, "{crack}: {pressed:?}, {pulled:?}");
@@ -253,7 +253,7 @@ fn work<P: Tried>() {
     for (name, text) in plates() {
         let case = small(&text, P::SMALL);
         let mut cracks = opened::<P>(&case);
-        assert_eq!(grow(&mut cracks, 12), None, "{name}");
+        assert_eq!(grow(&mut cracks, 5), None, "{name}");
         let rows: Vec<CurvePoint> = cracks.curve().into_iter().filter(|row| row.is_solved).collect();
         let (first, last) = (&rows[0], &rows[rows.len() - 1]);
         let mut released = 0.0;
@@ -276,7 +276,8 @@ fn parts<P: Tried>() {
         let curve = cracks.curve();
         let (last, others) = curve.split_last().unwrap();
         println!("{name}: {reason:?} after {} rows, {:.2} mm grown", curve.len(), last.growth() / MM);
-        assert_eq!(reason, Some(StopReason::Severed), "{name}");
+        // The last tip may leave a plate of nodes before anything is solved for.
+        assert!(matches!(reason, Some(StopReason::Severed | StopReason::LeftPlate)), "{name}: {reason:?}");
         assert!(others.iter().all(|row| row.work > 0.0) && others.windows(2).all(|rows| rows[1].cycles >= rows[0].cycles));
         assert!(last.crack_length > 0.9 * case.specimen.width, "{name}: {} m", last.crack_length);
     }

@@ -1,7 +1,5 @@
 //! What a model of retardation says of itself: its name, its constants with their keys and bounds, and its rate within a zone.
 
-use serde::{Deserialize, Serialize};
-
 use crate::growth_law::GrowthLaw;
 use perilife_base::input::Quantity;
 use perilife_base::keys::Key;
@@ -51,7 +49,7 @@ pub struct Now {
 }
 
 /// The plastic zone of the last overload, which is the state of a tip: way after it and size in m, K at its maximum in Pa√m.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Zone {
     pub from: f64,
     pub size: f64,

@@ -8,8 +8,6 @@
 
 use std::f64::consts::PI;
 
-use serde::{Deserialize, Serialize};
-
 use super::{Now, Retardation, Zone};
 use crate::growth_law::GrowthLaw;
 use crate::response::Response;
@@ -44,7 +42,7 @@ pub struct Laws<'a> {
 }
 
 /// Where a tip stands on its way through a spectrum.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Underway {
     /// Passes before this one, the cycle that comes next in it, and how often it is still to come.
     passes: f64,
