@@ -110,7 +110,9 @@ impl Dilatation {
                     };
                     for (c, force) in force.iter().enumerate() {
                         let target = &mut out[c * stride + first..][..LANES];
-                        target.iter_mut().zip(force).for_each(|(target, value)| *target += sign * value);
+                        for (target, value) in target.iter_mut().zip(force) {
+                            *target += sign * value;
+                        }
                     }
                 }
             },

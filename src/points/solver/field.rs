@@ -115,7 +115,7 @@ impl Layout {
                 move || {
                     let mut parts = fields.map(|field| field.chunks_exact_mut(row_len));
                     for row in first..last {
-                        work(row, parts.each_mut().map(|part| part.next().unwrap_or_default()));
+                        (*work)(row, parts.each_mut().map(|part| part.next().unwrap_or_default()));
                     }
                 },
             );

@@ -185,7 +185,9 @@ impl<const N: usize> Stiffness<N> for CoarseOperator<N> {
             }
             for (c, sum) in sums.iter().enumerate() {
                 let start = c * stride + padding + chunk * LANES;
-                r[start..start + LANES].iter_mut().zip(sum).for_each(|(r, sum)| *r -= sum);
+                for (r, sum) in r[start..start + LANES].iter_mut().zip(sum) {
+                    *r -= sum;
+                }
             }
         }
     }

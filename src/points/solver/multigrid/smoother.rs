@@ -176,7 +176,10 @@ impl<const N: usize> Smoother<N> {
                     }
                 }
             }
-            sums.into_iter().enumerate().for_each(|(c, sum)| take(start + c * self.layout.stride, sum));
+            // A loop: a closure of `for_each` need not be inlined, and is then without the wide instructions.
+            for (c, sum) in sums.into_iter().enumerate() {
+                take(start + c * self.layout.stride, sum);
+            }
         }
     }
 

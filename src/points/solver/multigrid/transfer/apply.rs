@@ -89,11 +89,14 @@ impl<const N: usize> Transfer<N> {
                     match self.own.at(row, chunk) {
                         Slot::Empty => {}
                         Slot::Own(weights) => self.restrict_chunk([chunk * LANES, row], weights, upper, from, out),
-                        Slot::Common => (0..N).for_each(|c| {
-                            let chunk = c * self.fine.stride + self.fine.padding + chunk * LANES;
-                            let (sums, from) = (&mut sums[chunk..chunk + LANES], &from[chunk..chunk + LANES]);
-                            sums.iter_mut().zip(from).for_each(|(sum, value)| *sum += weight * value);
-                        }),
+                        Slot::Common => {
+                            for c in 0..N {
+                                let chunk = c * self.fine.stride + self.fine.padding + chunk * LANES;
+                                for (sum, value) in sums[chunk..chunk + LANES].iter_mut().zip(&from[chunk..chunk + LANES]) {
+                                    *sum += weight * value;
+                                }
+                            }
+                        }
                     }
                 }
             }
