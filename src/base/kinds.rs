@@ -14,6 +14,15 @@ pub struct KindLine {
     pub meaning: &'static str,
 }
 
+/// Remedy for a name that is not known: the nearest one, else all of them.
+pub fn meant<'n>(near: Option<&str>, known: impl Iterator<Item = &'n str>) -> String {
+    let all = || known.collect::<Vec<_>>().join(", ");
+    near.map_or_else(
+        || format!("use one of: {}", Some(all()).filter(|all| !all.is_empty()).as_deref().unwrap_or("none")),
+        |near| format!("did you mean {near}?"),
+    )
+}
+
 /// What [`kinds!`](crate::kinds!) declares.
 pub trait Named: Sized {
     fn lines() -> Vec<KindLine>;
@@ -76,7 +85,7 @@ macro_rules! kinds {
             type Err = $crate::error::Error;
             fn from_str(text: &str) -> std::result::Result<Self, Self::Err> {
                 <Self as $crate::kinds::Named>::find(text).ok_or_else(|| {
-                    let remedy = $crate::keys::meant(None, Self::all().map(|k| k.name()));
+                    let remedy = $crate::kinds::meant(None, Self::all().map(|k| k.name()));
                     $crate::error::input(Self::KEY, format!("\"{text}\""), "unknown kind", remedy)
                 })
             }

@@ -173,6 +173,10 @@ pub(super) fn row_after(
         (before < 0.0 && now > 0.0).then(|| (before / (before - now), strength_reason(case, breaks)))
     });
     match run_out.into_iter().chain(broken).min_by(|a, b| a.0.total_cmp(&b.0)) {
+        // Not a round-off beside the limit.
+        Some((share, StopReason::RunOut)) => {
+            (CurvePoint { cycles: cycles_max, ..next.between(last, share) }, Some(StopReason::RunOut))
+        }
         Some((share, reason)) => (next.between(last, share), Some(reason)),
         None => (next, end),
     }

@@ -66,7 +66,7 @@ fn lengths_of_inspections_have_the_unit_of_the_run_or_their_own() {
     }
     let off = ["predict", "case.toml", "--out", "off", "--units", "us", "--inspect-from", "6.35"];
     let output = perilife(dir.path(), &off);
-    assert!(output.status.code() == Some(2) && texts(&output).1.contains("--inspect-from = 6.3500 inch"), "{}", texts(&output).1);
+    assert!(output.status.code() == Some(2) && texts(&output).1.contains("--inspect-from = 6.350 inch"), "{}", texts(&output).1);
     assert!(!dir.path().join("off").exists(), "nothing is written");
 }
 

@@ -99,10 +99,6 @@ macro_rules! whole {
 }
 whole!(usize, u64);
 
-/// A number in the unit of its key, whose range its reader looks at.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Unjudged(pub f64);
-
 /// Types that a value is, or is not.
 macro_rules! values {
     ($($T:ty: $shape:expr, $of:expr;)+) => { $(
@@ -120,7 +116,6 @@ values! {
     String: Shape::Text, |value| value.as_str().map(str::to_owned);
     std::path::PathBuf: Shape::Text, |value| value.as_str().map(Into::into);
     toml::Table: Shape::Table(&[]), |value| value.as_table().cloned();
-    Unjudged: Shape::Number, |value| number_of(value).map(Unjudged);
     // What its reader looks at by itself.
     Value: Shape::Other("a valid value"), |value| Some(value.clone());
 }

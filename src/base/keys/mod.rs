@@ -8,8 +8,9 @@ mod field;
 mod names;
 pub mod told;
 
-pub use field::{Field, OrNone, Plain, Unjudged, quantity, refuse};
-pub use names::{Kinds, meant, nearest};
+pub use crate::kinds::meant;
+pub use field::{Field, OrNone, Plain, quantity, refuse};
+pub use names::{Kinds, nearest};
 
 use toml::Table;
 pub use toml::Value;

@@ -5,6 +5,7 @@ use toml::Value;
 use super::{Given, Key, all};
 use crate::error::InputError;
 use crate::input::shorten;
+use crate::kinds::meant;
 use crate::units::us::{System, UNITS, renamed};
 
 /// The kinds of a section that comes in kinds.
@@ -55,15 +56,6 @@ pub(super) fn stranger(
 
 fn stem(name: &str) -> Option<&str> {
     UNITS.iter().find_map(|unit| name.strip_suffix(unit.suffix(System::Si))?.strip_suffix('_'))
-}
-
-/// Remedy for a name that is not known: the nearest one, else all of them.
-pub fn meant<'n>(near: Option<&str>, known: impl Iterator<Item = &'n str>) -> String {
-    let all = || known.collect::<Vec<_>>().join(", ");
-    near.map_or_else(
-        || format!("use one of: {}", Some(all()).filter(|all| !all.is_empty()).as_deref().unwrap_or("none")),
-        |near| format!("did you mean {near}?"),
-    )
 }
 
 /// The name that was meant, if one is near: a quarter of its letters may be wrong (put in, left out, changed, or swapped with the next one), three at

@@ -22,7 +22,7 @@ use crate::specimen::Edge;
 use course::Size;
 use forces::{PinEntry, RollerEntry};
 use perilife_base::input::{Quantity, number as plain};
-use perilife_base::keys::{Key, Plain, Unjudged, force, force_kn, key, number, stress};
+use perilife_base::keys::{Key, Plain, force, force_kn, key, number, stress};
 use perilife_base::units::MM;
 use residual::ResidualStress;
 use spectrum::{Class, Spectrum, SpectrumFormat};
@@ -56,6 +56,8 @@ const OF_DISPLACEMENT: (&str, &[&str]) = ("kind", &["displacement"]);
 const RESIDUAL: &str = "the residual stress";
 const FORMULA: &str = "give a formula in quotes, of numbers, x, y, pi, + - * / ^, brackets and functions";
 const DISPLACEMENT: Quantity = Quantity { what: "a displacement", unit: "mm", low: 1e-9, high: 1e4, si: MM };
+/// One below zero gets the remedy of compression, not that of a wrong number.
+const SIGNED: Quantity = Quantity { low: -1e4, ..DISPLACEMENT };
 
 perilife_base::keys! {
     /// Keys of `[loading]` but those of retardation.
@@ -67,8 +69,8 @@ perilife_base::keys! {
         force_range_n: Option<Size> = force("force_range_n", "Force range ΔP: maximum − minimum").group(LOAD);
         force_max_kn: Option<Size> = force_kn("force_max_kn", "Maximum force Pmax").group(LOAD);
         force_range_kn: Option<Size> = force_kn("force_range_kn", "Force range ΔP: maximum − minimum").group(LOAD);
-        displacement_max_mm: Option<Unjudged> = of_kind(key("displacement_max_mm", "Maximum displacement δ_max: relative, of the loaded sides").of(DISPLACEMENT).group(LOAD), OF_DISPLACEMENT);
-        displacement_range_mm: Option<Unjudged> = of_kind(key("displacement_range_mm", "Displacement range Δδ: relative, of the loaded sides").of(DISPLACEMENT).group(LOAD), OF_DISPLACEMENT);
+        displacement_max_mm: Option<Plain> = of_kind(key("displacement_max_mm", "Maximum displacement δ_max: relative, of the loaded sides").of(SIGNED).group(LOAD), OF_DISPLACEMENT);
+        displacement_range_mm: Option<Plain> = of_kind(key("displacement_range_mm", "Displacement range Δδ: relative, of the loaded sides").of(SIGNED).group(LOAD), OF_DISPLACEMENT);
         spectrum_scale_mpa: Option<Plain> = of_kind(stress("spectrum_scale_mpa", "Scale of the spectrum: gross stress of the value 1").group(LOAD), OF_SPECTRUM);
         spectrum_scale_n: Option<Plain> = of_kind(force("spectrum_scale_n", "Scale of the spectrum: force of the value 1").group(LOAD), OF_SPECTRUM);
         stress_ratio: Option<f64> = key("stress_ratio", "Stress ratio R: minimum / maximum, below 1").of(RATIO);

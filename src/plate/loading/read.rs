@@ -13,7 +13,7 @@ use super::{
 use crate::specimen::{LengthConvention, LoadMeasure, Specimen};
 use perilife_base::error::{self, Error, InputError, Result, fail_if, input, input_missing};
 use perilife_base::input::{FORCE, FORCE_KN, Folder, Quantity, STRESS};
-use perilife_base::keys::{Given, Plain, Section, Unjudged};
+use perilife_base::keys::{Given, Plain, Section};
 use perilife_base::units::MPA;
 
 const SEQUENCES: &[&str] = &["sequence", "sequences", "blocks", "spectrum", "history", "rainflow", "overloads"];
@@ -230,8 +230,6 @@ fn read_ratio(ratio: Option<f64>) -> Result<f64> {
 impl Input {
     fn magnitudes(&self) -> impl Iterator<Item = (&'static str, Option<Size>, Quantity, Of)> {
         let scale = |given: Option<Plain>| given.map(|given| Size::One(given.0));
-        // One below zero gets the remedy of compression, not that of a wrong number.
-        let displacement = |given: Option<Unjudged>| given.map(|given| Size::One(given.0));
         [
             ("stress_max_mpa", self.stress_max_mpa.clone(), STRESS, Of::Stress),
             ("stress_range_mpa", self.stress_range_mpa.clone(), STRESS, Of::Stress),
@@ -241,8 +239,8 @@ impl Input {
             ("force_range_kn", self.force_range_kn.clone(), FORCE_KN, Of::Force),
             ("spectrum_scale_mpa", scale(self.spectrum_scale_mpa), STRESS, Of::Stress),
             ("spectrum_scale_n", scale(self.spectrum_scale_n), FORCE, Of::Force),
-            ("displacement_max_mm", displacement(self.displacement_max_mm), DISPLACEMENT, Of::Displacement),
-            ("displacement_range_mm", displacement(self.displacement_range_mm), DISPLACEMENT, Of::Displacement),
+            ("displacement_max_mm", scale(self.displacement_max_mm), DISPLACEMENT, Of::Displacement),
+            ("displacement_range_mm", scale(self.displacement_range_mm), DISPLACEMENT, Of::Displacement),
         ]
         .into_iter()
     }

@@ -20,7 +20,7 @@ pub(super) const TOLERANCE: f64 = 1e-11;
 const ITERATIONS_MAX: usize = 400;
 /// Work of the loads over that of the displacement a solve starts from at which the plate is a mechanism, and every how many
 /// iterations that is asked.
-const LOST_STIFFNESS: f64 = 1e3;
+pub(super) const LOST_STIFFNESS: f64 = 1e3;
 const ITERATIONS_PER_LOOK: usize = 20;
 /// Iterations of all solves beyond those of a fresh hierarchy after which it is rebuilt: to build it takes as long.
 const ITERATIONS_OF_BUILDING: usize = 12;

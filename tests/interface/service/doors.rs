@@ -68,7 +68,8 @@ fn a_drawing_is_sent_along() {
         ["bracket.toml", "bracket.dxf"].map(|name| std::fs::read_to_string(format!("data/cases/{name}")).unwrap());
     let sent = |files: serde_json::Value| service.post("/v1/check", &json!({ "input": case, "files": files }));
     let plate = sent(json!({ "bracket.dxf": drawing })).expect(200);
-    assert!(plate.text().contains("\"holes\""), "{}", plate.text());
+    let drawn = plate.json()["drawing"].as_str().unwrap().to_owned();
+    assert!(drawn.contains("class=\"plate-hole\"") && drawn.contains("<circle"), "{drawn}");
     let missing = sent(json!({})).expect(422);
     assert!(missing.text().contains("bracket.dxf") && missing.text().contains("was not uploaded"), "{}", missing.text());
     let broken = sent(json!({ "bracket.dxf": drawing.replace("\nholes\n", "\nbores\n") })).expect(422);

@@ -316,7 +316,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.see("#job[data-job-state=succeeded]");
     page.until("document.querySelector('[data-part=result]')?.textContent.includes('Stopped early at')");
     let summary = service.get(&format!("/v1/predictions/{stopped}")).json()["summary"].clone();
-    assert!(summary["stop_reason"] == "stopped" && summary["life_is_lower_bound"] == true, "{summary:#}");
+    assert!(summary["stop_reason"] == "stopped", "{summary:#}");
     assert!(summary["crack_length_final_mm"].as_f64() < done["summary"]["crack_length_final_mm"].as_f64());
     walk.look("16_stopped");
 

@@ -75,7 +75,7 @@ fn pages(service: &Server, folder: &Path) -> Vec<Page> {
     let mut pages: Vec<Page> = [
         ("/#/new", "#new-kinds .card", ""),
         ("/#/measure?example", "#calibrate:not([disabled])", ""),
-        ("/#/predict", "#predict:not([disabled])", "#plate-example"),
+        ("/#/predict", "#predict", "#plate-example"),
         ("/#/new?way=sweep", "#new-sweep fieldset", ""),
         ("/#/new?way=file", "#file-text", ""),
         ("/#/runs", "tr[data-job]", ""),

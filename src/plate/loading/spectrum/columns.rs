@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use super::formats::{Content, RawCycle, SpectrumFormat};
+use super::content::{Content, RawCycle, SpectrumFormat};
 use perilife_base::error::Result;
 use perilife_base::table::names::{Kind, Named, Role};
 use perilife_base::table::quantities::{Words, in_si, numbers};

@@ -1,35 +1,11 @@
-//! What a file of a spectrum holds, and the formats of other programs: AFGROW's `.spx` and `.sub`, and FASTRAN.
+//! The formats of other programs: AFGROW's `.spx` and `.sub`, and FASTRAN.
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
 use super::columns;
+use super::content::{Content, RawCycle};
 use perilife_base::error::{Error, InputError, Result, fail_if};
-
-perilife_base::kinds! {
-    pub enum SpectrumFormat for "loading.spectrum_format" {
-        Cycles = "cycles": "table with the columns max, min, cycles (or range, mean, cycles), in order, each maximum before its minimum",
-        TurningPoints = "turning_points": "one column of peaks and valleys, rainflow counted as repeating (ASTM E1049, 5.4.5); each cycle is applied at its peak",
-        Spx = "spx": "AFGROW .spx: XML with elements B (Mx, Mn, C) in every SubSpectrum",
-        Sub = "sub": "AFGROW .sub: a title with the number of rows, then rows max min cycles",
-        Fastran = "fastran": "FASTRAN: a title, points Smax Smin INVERT ICLIP, then peaks and valleys as whole numbers",
-    }
-}
-
-/// Cycles or turning points as a file has them.
-pub(super) enum Content {
-    Cycles(Vec<RawCycle>),
-    Points(Vec<f64>),
-}
-
-/// A cycle of a file, in its line.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct RawCycle {
-    pub line: usize,
-    pub max: f64,
-    pub min: f64,
-    pub count: f64,
-}
 
 /// A line that is not empty and no comment: its number, counted from 1, and what it holds.
 pub(super) type Row<'a> = (usize, &'a str);

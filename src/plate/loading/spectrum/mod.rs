@@ -5,12 +5,13 @@
 
 mod classes;
 mod columns;
+mod content;
 mod formats;
 pub mod rainflow;
 mod read;
 
 pub use classes::Class;
-pub use formats::SpectrumFormat;
+pub use content::SpectrumFormat;
 
 use std::fmt;
 

@@ -4,7 +4,8 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use super::classes::{classes, kinds};
-use super::formats::{self, Content, RawCycle, SpectrumFormat, fault, rows};
+use super::content::{Content, RawCycle, SpectrumFormat};
+use super::formats::{self, fault, rows};
 use super::rainflow::rainflow;
 use super::{Cycle, PERIOD_MOST, Spectrum, columns, is_whole};
 use crate::loading::Input;

@@ -9,7 +9,7 @@ pub mod condense;
 pub mod update;
 
 use super::assembly::{MIXED, Mixed, Springs};
-use super::conjugate_gradient::MultigridSolver;
+use super::conjugate_gradient::{LOST_STIFFNESS, MultigridSolver};
 use super::direct::{factorised, pinned_components};
 use super::product::Product;
 use super::spring::{End, Term};
@@ -115,11 +115,15 @@ impl<const N: usize> Solver<N> {
     /// a mechanism iteration breaks down. A plate that loses its stiffness is beyond both, and held sums beyond factorisation.
     fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         let Some(multigrid) = &mut self.multigrid else { return factorised(system, u) };
-        let is_tied = system.product.ties.slaves().next().is_some();
-        multigrid.solve(tolerance, system, u).or_else(|error| match error {
-            Error::Mechanics(_) if !is_tied => factorised(system, u),
-            error => Err(error),
-        })
+        let (is_tied, before) = (system.product.ties.slaves().next().is_some(), self.work);
+        match multigrid.solve(tolerance, system, u) {
+            Err(Error::Mechanics(_)) if !is_tied => {
+                let solved = factorised(system, u)?;
+                let is_lost = before > 0.0 && solved.work > LOST_STIFFNESS * before;
+                if is_lost { Err(Error::LossOfStiffness) } else { Ok(solved) }
+            }
+            solved => solved,
+        }
     }
 
     /// Solves the whole plate; a window that is up to date takes its new base from it.
