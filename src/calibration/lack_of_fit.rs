@@ -85,9 +85,10 @@ impl MisfitAtEnds {
     pub fn words(&self) -> String {
         let end = |end: Misfit| {
             let size = end.rate_over_law_percent.abs();
-            let (digits, sense) = (usize::from(size < 9.95), if end.rate_over_law_percent < 0.0 { "slower" } else { "faster" });
+            let (digits, sense) = (usize::from(size < 99.95), if end.rate_over_law_percent < 0.0 { "slower" } else { "faster" });
             let [from, to] = [end.delta_k_from_mpa_sqrt_m, end.delta_k_to_mpa_sqrt_m];
-            format!("{size:.digits$} % {sense} at {from:.2} to {to:.2}")
+            let places = usize::from(from < 9.995) + 1;
+            format!("{size:.digits$} % {sense} at {from:.places$} to {to:.places$}")
         };
         let ends: Vec<String> = [self.low, self.high].into_iter().flatten().map(end).collect();
         ends.join(", ").replacen("at", "at ΔK", 1)

@@ -5,32 +5,13 @@
 
 mod document;
 mod folder;
+mod output;
 mod quantity;
 mod slice;
 mod us_keys;
 
 pub use document::{Document, ForeignSections, Sections};
 pub use folder::{FileId, Folder, Opened, OpenedFile, Provenance, STREAM, sha256};
+pub use output::Output;
 pub use quantity::*;
 pub use slice::{LEVELS_OF_SCENES, OF_SCENES, PLANNED, number_of, shorten, slice, table_of, value_at};
-
-use toml::Value;
-
-use crate::error::Result;
-use crate::keys::{key, section};
-
-crate::keys! {
-    /// What a run leaves beside its tables and pictures: `[output]` of a case or a scene.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-    pub struct Output {
-        paraview: bool = key("paraview", "ParaView files: fields at several stages"), or "false" false;
-        animation: bool = key("animation", "Animation: growth.svg of the growing cracks"), or "false" false;
-        tables_only: bool = key("tables_only", "Tables only: no pictures"), or "false" false;
-    }
-}
-
-impl Output {
-    pub fn from_value(value: &Value) -> Result<Self> {
-        section(value, "output")
-    }
-}
