@@ -11,6 +11,7 @@ mod support {
     pub mod browser;
     pub mod correspondence;
     pub mod daily;
+    pub mod desk;
     pub mod fatigue_test;
     pub mod field;
     pub mod fits;
@@ -22,6 +23,7 @@ mod support {
     pub mod noise;
     pub mod plates;
     pub mod postgres;
+    pub mod rows;
     pub mod scenes;
     pub mod server;
     pub mod shared;

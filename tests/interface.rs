@@ -1,9 +1,8 @@
 //! Do the doors work?
 
 mod bad_csv;
-mod bad_scenes;
 mod bad_sweeps;
-mod bad_toml;
+mod bad_files;
 mod band;
 mod calibrate;
 mod chart;

@@ -9,6 +9,8 @@ use clap::CommandFactory;
 use perilife::commands::CommandLine;
 use tempfile::tempdir;
 
+use crate::support::rows::assert_says;
+
 /// Runs the program in `folder`; stdout and stderr are no terminals.
 pub fn perilife(folder: &Path, arguments: &[&str]) -> Output {
     cargo_bin_cmd!("perilife").current_dir(folder).env_remove("RUST_LOG").args(arguments).output().unwrap()
@@ -20,7 +22,7 @@ pub fn texts(output: &Output) -> (String, String) {
 }
 
 /// The process ended with `code` and, warnings apart, one message on stderr that holds all `words`, without a trace of a panic.
-pub fn assert_refused(output: &Output, code: i32, words: &[&str]) {
+pub fn assert_refused(output: &Output, code: i32, words: &[impl AsRef<str>]) {
     let (stdout, stderr) = texts(output);
     assert_eq!(output.status.code(), Some(code), "{stderr}");
     // With --json the error is an object.
@@ -28,7 +30,7 @@ pub fn assert_refused(output: &Output, code: i32, words: &[&str]) {
     assert!(stdout.is_empty() || object(&stdout), "{stdout}");
     let first = stderr.lines().find(|line| !line.starts_with("warning: "));
     assert!(first.is_some_and(|line| line.starts_with("error: ")) && !stderr.contains("panicked"), "{stderr}");
-    words.iter().for_each(|word| assert!(stderr.contains(word), "{word} in {stderr}"));
+    assert_says(&stderr, words, "stderr");
 }
 
 fn subcommands() -> Vec<String> {

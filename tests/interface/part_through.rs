@@ -7,6 +7,7 @@ use serde_json::Value;
 use tempfile::tempdir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::rows::rows;
 
 const EXAMPLE: &str = include_str!("../../data/cases/corner_crack_at_hole.toml");
 
@@ -17,53 +18,11 @@ fn write(folder: &Path, change: [&str; 2]) {
 
 #[test]
 fn bad_input_is_refused_by_name() {
-    let rows: [([&str; 2], &[&str]); 13] = [
-        (
-            ["crack_depth_mm = 1.27", "crack_depth_mm = 5.5"],
-            &["hole.toml:1", "specimen.crack_depth_mm = 5.5", "a/t = 1.100", "through crack"],
-        ),
-        (
-            ["crack_half_length_mm = 1.27", "crack_half_length_mm = 36"],
-            &["specimen.crack_half_length_mm = 36", "36 mm", "wider than the plate"],
-        ),
-        (["hole_diameter_mm = 8.0", "hole_diameter_mm = 80"], &["specimen.hole_diameter_mm = 80", "must be below the width 80"]),
-        (["cracks = 1 ", "# "], &["specimen.cracks", "missing", "give 1"]),
-        (
-            ["\"corner_crack_at_hole\"", "\"surface_crack\""],
-            &["specimen.hole_diameter_mm = 8", "surface_crack", "corner_crack_at_hole"],
-        ),
-        (
-            ["\"corner_crack_at_hole\"", "\"thumbnail_crack\""],
-            &["specimen.kind", "thumbnail_crack", "surface_crack, corner_crack"],
-        ),
-        (
-            ["[fatigue]", "[model]\nmethod = \"element_free_galerkin\"\n[fatigue]"],
-            &["model.method", "part-through", "\"handbook\""],
-        ),
-        (["[fatigue]", "[model]\nmethod = \"peridynamics\"\n[fatigue]"], &["model.method", "part-through", "on nodes"]),
-        (
-            ["[fatigue]", "[stop]\ncrack_depth_mm = 1\n[fatigue]"],
-            &["stop.crack_depth_mm = 1", "must be above the initial crack depth 1.27 mm"],
-        ),
-        (["[fatigue]", "[stop]\ncrack_depth_mm = 6\n[fatigue]"], &["stop.crack_depth_mm = 6", "exceeds the thickness 5 mm"]),
-        (
-            ["stress_ratio = 0.1", "stress_ratio = 0.1\nstress_parallel_ratio = -1"],
-            &["loading.stress_parallel_ratio = -1", "stress at the hole", "crack_at_hole"],
-        ),
-        (
-            ["cracks = 1 ", "holes = [{ x_mm = 8, y_mm = 1, diameter_mm = 6 }]\ncracks = 1 "],
-            &["specimen.holes[0]", "is on the crack"],
-        ),
-        (
-            ["cracks = 1 ", "holes = [{ x_mm = 38, y_mm = 0, diameter_mm = 6 }]\ncracks = 1 "],
-            &["specimen.holes[0]", "past the outline"],
-        ),
-    ];
     let dir = tempdir().unwrap();
-    for (change, words) in rows {
-        write(dir.path(), change);
+    for ([old, new], words) in rows::<Vec<([String; 2], Vec<String>)>>("part_through", "refused") {
+        write(dir.path(), [&old, &new]);
         for command in [&["predict", "hole.toml", "--out", "run"][..], &["check", "hole.toml"]] {
-            assert_refused(&perilife(dir.path(), command), 2, words);
+            assert_refused(&perilife(dir.path(), command), 2, &words);
         }
     }
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1, "nothing half-written");

@@ -7,6 +7,7 @@ use serde_json::Value;
 use tempfile::tempdir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::rows::rows;
 
 const CASE: &str = r#"[specimen]
 kind = "middle_tension"
@@ -46,71 +47,24 @@ fn run(case: &str, file: &str, content: &str, arguments: &[&str]) -> (tempfile::
 
 #[test]
 fn spectra_that_are_none_are_refused_by_file_line_and_value() {
-    let rows: [(&str, &str, &[&str]); 14] = [
-        ("flights.csv", "0.7\n", &["flights.csv", "turning points", "too few"]),
-        ("flights.csv", "", &["flights.csv", "empty"]),
-        ("flights.csv", "max,min,cycles\n", &["flights.csv", "no rows"]),
-        ("flights.csv", "max,min,cycles\n1,0.1,5\n0.5,nan,2\n", &["flights.csv:3:", "min = nan", "finite"]),
-        (
-            "flights.csv",
-            "max,min,cycles\n1,0.1,5\n0.1,0.5,2\n",
-            &["flights.csv:3:", "min = 0.5", "above the maximum", "turning_points"],
-        ),
-        ("flights.csv", "max,min,cycles\n0.5,0.5,2\n", &["flights.csv", "contains no cycles", "no row has a range"]),
-        ("flights.csv", "max,min,cycles\n0.5,0.1,-2\n", &["flights.csv:2:", "cycles = -2", "0 or more"]),
-        ("flights.csv", "max,min,cycles\n0.5,x,1\n", &["flights.csv:2:", "min = x", "not a number"]),
-        ("flights.csv", "max,min,cycles\n-0.5,-1,1\n", &["flights.csv", "no tensile load", "positive"]),
-        ("flights.csv", "max_ksi,max,min\n1,2,3\n", &["flights.csv:1:", "max", "duplicates an earlier column"]),
-        ("flights.csv", "max,min,cycles\n1,0.5,2,7\n", &["flights.csv:2:", "4 columns where the header has 3"]),
-        ("flights.csv", "title\n5 1.0 0.0 0 0\n1 2 3\n", &["flights.csv:2:", "points = 5", "3"]),
-        ("flights.csv", "title\n3 1.0 0.0 1 0\n1 2 3\n", &["flights.csv:2:", "INVERT = 1", "is not supported"]),
-        ("flights.csv", "<A>\n<B Mx=\"1\" Mn=\"0\"/></A>", &["flights.csv:2:", "C", "missing"]),
-    ];
-    for (file, content, words) in rows {
-        let (dir, output) = run(CASE, file, content, &["predict", "case.toml", "--out", "run"]);
-        assert_refused(&output, 2, words);
+    for (content, words) in rows::<Vec<(String, Vec<String>)>>("spectrum", "no_spectra") {
+        let (dir, output) = run(CASE, "flights.csv", &content, &["predict", "case.toml", "--out", "run"]);
+        assert_refused(&output, 2, &words);
         assert!(!dir.path().join("run").exists(), "{content}");
     }
 }
 
 #[test]
 fn keys_that_do_not_make_a_spectrum_are_refused() {
-    let rows: [(&str, &str, &[&str]); 13] = [
-        ("spectrum_file = \"flights.csv\"\n", "", &["loading.spectrum_file", "missing"]),
-        ("spectrum_scale_mpa = 100.0\n", "", &["loading.spectrum_scale_mpa", "no load given", "spectrum_scale_n"]),
-        ("spectrum_scale_mpa = 100.0\n", "stress_max_mpa = 100\n", &["loading.stress_max_mpa", "spectrum_scale_mpa"]),
-        (
-            "spectrum_scale_mpa = 100.0\n",
-            "spectrum_scale_mpa = 100.0\nstress_ratio = 0.1\n",
-            &["loading.stress_ratio", "remove it"],
-        ),
-        ("kind = \"spectrum\"\n", "", &["loading.spectrum_file", "kind = \"spectrum\""]),
-        (
-            "spectrum_scale_mpa = 100.0\n",
-            "spectrum_scale_mpa = 100.0\nomission_percent = 120\n",
-            &["loading.omission_percent", "99"],
-        ),
-        ("yield_strength_mpa = 340.0\n", "", &["loading.retardation", "yield_strength_mpa"]),
-        ("wheeler_exponent = 1.3\n", "", &["loading.wheeler_exponent", "missing"]),
-        ("wheeler_exponent = 1.3\n", "wheeler_exponent = 1.3\nshutoff_ratio = 2\n", &["loading.shutoff_ratio", "wheeler"]),
-        ("\"wheeler\"", "\"weeler\"", &["loading.retardation", "did you mean \"wheeler\"?"]),
-        ("\"wheeler\"\nwheeler_exponent = 1.3\n", "\"willenborg\"\nshutoff_ratio = 2\n", &["willenborg_k_th", "threshold"]),
-        ("method = \"handbook\"", "spacing_mm = 2\n[output]\n", &[]),
-        (
-            "kind = \"spectrum\"\nspectrum_file = \"flights.csv\"\nspectrum_scale_mpa = 100.0\n",
-            "stress_max_mpa = 90\nstress_ratio = 0.1\n",
-            &["loading.retardation", "kind = \"spectrum\""],
-        ),
-    ];
     let wheeler = CASE.replace("spectrum_scale_mpa = 100.0\n", WHEELER);
-    for (old, new, words) in rows {
-        assert!(wheeler.contains(old), "{old}");
-        let (_, output) = run(&wheeler.replace(old, new), "flights.csv", FLIGHTS, &["check", "case.toml"]);
+    for (old, new, words) in rows::<Vec<(String, String, Vec<String>)>>("spectrum", "wrong_keys") {
+        assert!(wheeler.contains(&old), "{old}");
+        let (_, output) = run(&wheeler.replace(&old, &new), "flights.csv", FLIGHTS, &["check", "case.toml"]);
         if words.is_empty() {
             assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
             continue;
         }
-        assert_refused(&output, 2, words);
+        assert_refused(&output, 2, &words);
     }
     // Bonds that lose life by their own strain have no rate over K.
     let bonds = CASE.replace("method = \"handbook\"", "method = \"peridynamics\"");

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::support::fits::report;
+use crate::support::rows::rows;
 use perilife_base::input::Folder;
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_calibration::case::CalibrationCase;
@@ -109,106 +110,22 @@ fn results_have_every_promised_key_and_read_back() {
 
 #[test]
 fn broken_calibration_files_say_what_would_be_right() {
-    let swap = |from: &str, to: &str| {
-        assert!(GOOD.contains(from), "{from}");
-        GOOD.replace(from, to)
-    };
-    let broken = [
-        (
-            "no section",
-            GOOD.split_once("[specimen]").map(|(_, rest)| format!("[specimen]{rest}")).unwrap(),
-            "measured: is missing",
-        ),
-        (
-            "unknown key",
-            swap("from_crack", "from_crak"),
-            "measured.from_crak_length_mm = 9.0: unknown key; did you mean from_crack_length_mm?",
-        ),
-        ("no files", swap("[\"curves.csv\"]", "[]"), "measured.files = []: has no file"),
-        ("files of a wrong kind", swap("[\"curves.csv\"]", "\"curves.csv\""), "measured.files"),
-        (
-            "window the wrong way",
-            swap("to_crack_length_mm = 13.0", "to_crack_length_mm = 8.0"),
-            "to_crack_length_mm = 8: is not above from_crack_length_mm = 9",
-        ),
-        (
-            "window too narrow",
-            swap("to_crack_length_mm = 13.0", "to_crack_length_mm = 11.0"),
-            "leaves 3 of 7 readings of specimen A",
-        ),
-        (
-            "window not a number",
-            swap("to_crack_length_mm = 13.0", "to_crack_length_mm = nan"),
-            "to_crack_length_mm = NaN: is not a finite number",
-        ),
-        (
-            "model after the first reading",
-            swap("crack_length_mm = 9.0\n[material]", "crack_length_mm = 9.5\n[material]"),
-            "specimen.crack_length_mm = 9.5: exceeds the first reading of specimen A, 9 mm",
-        ),
-        (
-            "panel too narrow",
-            swap("width_mm = 152.4", "width_mm = 26.0"),
-            "curves.csv:7: crack_length_mm = 13: is outside the specimen, whose half width is 13 mm",
-        ),
-        ("unknown parameter", swap("[\"a\", \"p\"]", "[\"a\", \"q\"]"), "use one of: a, p"),
-        ("p alone", swap("[\"a\", \"p\"]", "[\"p\"]"), "fit.parameters = [\"p\"]: does not contain a"),
-        ("p missing", swap("[\"a\", \"p\"]", "[\"a\"]"), "fit.p: is missing"),
-        ("p twice", swap("[\"a\", \"p\"]", "[\"a\", \"p\"]\np = 3.0"), "fit.p = 3: is both given and fitted"),
-        (
-            "law given",
-            format!("{GOOD}[fatigue]\na = 1.0\np = 3.0\nhorizon_mm = 3.0\n"),
-            "fatigue: gives the law that the calibration fits",
-        ),
-        (
-            "another mean-stress law",
-            format!("{GOOD}[fatigue]\nwalker_gamma = 0.6\n"),
-            "fatigue.walker_gamma = 0.6: does not apply to a fit at one R",
-        ),
-        (
-            "rate of bonds by their strain",
-            format!("{GOOD}[fatigue]\ndriver = \"bond_strain\"\n"),
-            "fatigue.driver = \"bond_strain\": does not apply to a calibration, which fits the growth rate over K; \
-             use driver = \"tip_field\"",
-        ),
-        (
-            "fatigue bonds where no tip is",
-            format!("{GOOD}[fatigue]\nageing = \"everywhere\"\n"),
-            "fatigue.driver = \"bond_strain\": does not apply to a calibration",
-        ),
-        (
-            "short panel by hand calculation",
-            format!("{}[model]\nmethod = \"handbook\"\n", swap("length_mm = 300.0", "length_mm = 152.4")),
-            "model.method = \"handbook\": has no K(a) for this specimen",
-        ),
-        (
-            "short panel, whose range of K only a run shows",
-            swap("length_mm = 300.0", "length_mm = 152.4").replace("[fit]\n", "[fit]\nrecord = \"other.toml\"\n"),
-            "fit.record = \"other.toml\": replaces p if ΔK varies too little, which is known only after a run",
-        ),
-        ("unknown unit", swap("[specimen]", "length_unit = \"furlong\"\n[specimen]"), "use one of: mm, inch, m"),
-        (
-            "unit against the header",
-            swap("[specimen]", "length_unit = \"inch\"\n[specimen]"),
-            "curves.csv:1: header = crack_length_mm: is in mm, but measured.length_unit says inch",
-        ),
-    ];
-    for (name, text, words) in broken {
+    for (name, swaps, words) in rows::<Vec<(String, Vec<String>, String)>>("calibration_case", "broken") {
+        let text = swaps.chunks(2).fold(GOOD.to_owned(), |text, swap| {
+            assert!(text.contains(&swap[0]), "{name}: {}", swap[0]);
+            if swap[0].is_empty() { text + &swap[1] } else { text.replace(&swap[0], &swap[1]) }
+        });
         let error = read(&text, &[]).unwrap_err();
         assert_eq!(error.exit_code(), 2, "{name}: {error}");
-        assert!(error.to_string().contains(words), "{name}: {words} in {error}");
+        assert!(error.to_string().contains(&words), "{name}: {words} in {error}");
         assert!(error.to_string().contains("alloy.toml") || error.to_string().contains("curves.csv"), "{name}: {error}");
     }
     // A threshold is allowed, and said to belong to the cases as well; gamma = 1 is what a record means anyway.
     let warned = read(&format!("{GOOD}[fatigue]\nwalker_gamma = 1.0\ndelta_k_threshold_mpa_sqrt_m = 2.0\n"), &[]).unwrap();
     assert!(warned.warnings.iter().any(|line| line.contains("has no effect on the fit")), "{:?}", warned.warnings);
-    let error = read(&swap_file("elsewhere.csv"), &[]).unwrap_err();
+    let error = read(&GOOD.replace("curves.csv", "elsewhere.csv"), &[]).unwrap_err();
     assert_eq!(error.exit_code(), 4);
     assert!(error.to_string().contains("elsewhere.csv: cannot read"), "{error}");
-}
-
-fn swap_file(file: &str) -> String {
-    GOOD.replace("curves.csv", file)
 }
 
 #[test]

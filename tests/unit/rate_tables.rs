@@ -1,37 +1,16 @@
 //! Tables of da/dN over ΔK in every dress: read to the last digit, or refused by name.
 
 use std::path::Path;
+use std::sync::LazyLock;
 
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_measured::rates::read;
 use perilife_measured::{RangeKind, RateFileKeys, RateTable};
 
-/// Names of ΔK and da/dN with MPa√m and mm/cycle in a unit of theirs. Inch 25.4 mm, ksi 6.894757293168 MPa, kgf 9.80665 N.
-const DELTA_K: [(&str, f64); 12] = [
-    ("delta_k_mpa_sqrt_m", 1.0),
-    ("ΔK (MPa√m)", 1.0),
-    ("Delta K [MPa m^0.5]", 1.0),
-    ("dK, MPa*sqrt(m)", 1.0),
-    ("DELTA K (MPA SQRT(M))", 1.0),
-    ("∆K / MPa m^1/2", 1.0),
-    ("Stress intensity range (MPa√m)", 1.0),
-    ("Delta K (ksi√in)", 1.098_843_453_6),
-    ("dK (ksi sqrt(in))", 1.098_843_453_6),
-    ("ΔK [N/mm^1.5]", 0.031_622_776_601_7),
-    ("Delta K (N/mm^(3/2))", 0.031_622_776_601_7),
-    ("ΔK (kgf/mm^1.5)", 0.310_113_502_2),
-];
-const RATE: [(&str, f64); 9] = [
-    ("da_dn_mm_per_cycle", 1.0),
-    ("da/dN (mm/cycle)", 1.0),
-    ("DA/DN [mm/Cycle]", 1.0),
-    ("Crack growth rate (mm/cycle)", 1.0),
-    ("da/dN (m/cycle)", 1e3),
-    ("da/dN [m/cyc]", 1e3),
-    ("da/dN (in/cycle)", 25.4),
-    ("dadN (inch/cycle)", 25.4),
-    ("da/dN (µm/cycle)", 1e-3),
-];
+use crate::support::rows::rows;
+
+/// Names of ΔK and of da/dN, each with MPa√m or mm/cycle in a unit of theirs.
+static NAMES: LazyLock<[Vec<(String, f64)>; 2]> = LazyLock::new(|| ["delta_k", "rate"].map(|of| rows("rate_tables", of)));
 
 /// Whole numbers that look random and are the same on every machine (Park and Miller 1988, Commun. ACM 31:1192).
 struct Chance(u64);
@@ -46,8 +25,7 @@ impl Chance {
 /// Writes a table of rates by chance, reads it, and holds it against the truth; `true` where it was read.
 fn try_table(seed: u64) -> bool {
     let mut chance = Chance(seed * 7919 + 1);
-    let ((k_name, k_unit), (rate_name, rate_unit)) = (DELTA_K[chance.below(DELTA_K.len())], RATE[chance.below(RATE.len())]);
-    let (mut k_name, mut rate_name) = (k_name.to_owned(), rate_name.to_owned());
+    let [(mut k_name, k_unit), (mut rate_name, rate_unit)] = NAMES.each_ref().map(|of| of[chance.below(of.len())].clone());
     let [log_k, log_rate] = [chance.below(6) == 0, chance.below(6) == 0];
     if log_k {
         k_name = format!("log10 {k_name}");

@@ -8,6 +8,7 @@ use perilife_growth::predict::tip_factors::{StressIntensityMethod, stress_intens
 use perilife_growth::predict::{Prediction, Silent, error_estimate::error_estimate, predict};
 use perilife_plate::specimen::geometry::distance;
 
+use crate::support::rows::rows;
 use crate::support::shared::shared;
 
 fn file(name: &str) -> Option<PathBuf> {
@@ -32,31 +33,14 @@ fn cycles_at_gap(run: &Prediction, gap: f64) -> f64 {
     run.curve[row - 1].cycles + share * (run.curve[row].cycles - run.curve[row - 1].cycles)
 }
 
-/// File, right life, bound of its error and of the error that is stated, percent.
-const LIVES: [(&str, f64, f64, f64); 13] = [
-    ("nu_near_half/mt499", 177_790.0, 1.0, 2.0),
-    ("nu_near_half/guard_mt_03", 177_790.0, 0.3, 1.5),
-    ("slot_chosen/slot_02", 50_208.0, 0.8, 2.0),
-    ("slot_chosen/slot_1", 33_275.0, 0.4, 1.5),
-    ("slot_chosen/guard_slot_3", 21_860.0, 0.4, 1.5),
-    ("guards/bend_pure", 423.1e6, 0.4, 1.5),
-    ("guards/offset", 75_053.0, 0.4, 2.5),
-    ("guards/notch_02", 35_063.0, 0.5, 1.5),
-    ("guards/clamped", 88_684.0, 0.4, 1.5),
-    ("guards/biax_m1", 253_089.0, 1.0, 2.0),
-    ("guards/seb", 2_783.0, 0.3, 1.5),
-    ("guards/ese", 32_056.0, 1.2, 2.0),
-    ("guards/wol", 3_778.0, 1.2, 2.0),
-];
-
 #[test]
 fn lives_of_plates_by_default() {
-    for (name, right, percent, stated) in LIVES {
-        let Some(path) = file(name) else { return };
+    for (name, right, percent, stated) in rows::<Vec<(String, f64, f64, f64)>>("mechanics5_plates", "lives") {
+        let Some(path) = file(&name) else { return };
         let case = Case::from_file(&path, &[]).unwrap();
         assert!(case.model.method() != Method::Peridynamics, "{name}");
         let run = predict(&case, &Silent).unwrap();
-        is_near(run.life_cycles(), right, percent, name);
+        is_near(run.life_cycles(), right, percent, &name);
         let found = error_estimate(&case, &run).unwrap().life_percent;
         assert!(found < stated, "{name}: {found:.2} % stated");
     }

@@ -2,53 +2,16 @@
 //! by cycle and quadrature (shared data, `field/practice5`).
 
 use crate::support::field::{command, is_near, kind, predicted};
-
-/// Kind, case, passes or cycles that are right with a share, and what is said.
-type Right<'a> = (&'a str, &'a str, Wanted, f64, &'a str);
-
-enum Wanted {
-    Passes(f64),
-    Cycles(f64),
-}
-use Wanted::{Cycles, Passes};
+use crate::support::rows::rows;
 
 #[test]
 fn spectra_of_other_people_are_read_and_counted_as_they_mean_them() {
-    let rows: [Right<'_>; 25] = [
-        ("repeated_pass", "gust", Passes(17_114.1), 1e-5, ""),
-        ("repeated_pass", "gusts", Passes(20_292.9), 1e-5, ""),
-        ("repeated_pass", "starts_at_peak", Passes(20_231.2), 1e-5, ""),
-        ("rare_gust", "fraction", Cycles(157_868.0), 1e-3, ""),
-        ("rare_gust", "written_out", Cycles(157_868.0), 1e-3, ""),
-        ("counted_tables", "range_mean_count", Passes(209.83), 1e-4, ""),
-        ("counted_tables", "pandas", Passes(209.83), 1e-4, ""),
-        ("counted_tables", "matlab", Passes(209.83), 1e-4, ""),
-        ("decimal_comma", "semicolons", Passes(4348.64), 1e-5, ""),
-        ("count_in_first_line", "levels", Passes(643.0), 1e-4, "line 1, 400, is the number of values"),
-        ("count_in_first_line", "tough", Passes(643.0), 1e-4, "line 1, 400, is the number of values"),
-        ("rows_without_range", "held", Passes(4348.64), 1e-5, "1 row is omitted"),
-        ("rows_without_range", "zero", Passes(4348.64), 1e-5, "1 row is omitted"),
-        ("spectrum_headings", "smax", Passes(846.35), 1e-5, ""),
-        ("spectrum_headings", "max_mpa", Passes(846.35), 1e-5, ""),
-        ("spectrum_headings", "quoted", Passes(846.35), 1e-5, ""),
-        ("spectrum_headings", "unit_row", Passes(846.35), 1e-5, ""),
-        ("spectrum_headings", "more_columns", Passes(846.35), 1e-5, ""),
-        ("spectrum_headings", "utf16", Passes(846.35), 1e-5, ""),
-        ("spectrum_headings", "time", Passes(23_081.4), 1e-5, ""),
-        ("guards", "wheeler", Cycles(739_191.0), 1e-3, ""),
-        ("guards", "closure", Cycles(445_157.0), 1e-3, ""),
-        ("guards", "newman", Cycles(846_620.0), 1e-3, ""),
-        ("guards", "mean", Cycles(308_977.0), 1e-3, ""),
-        ("guards", "limit_load", Cycles(623_311.0), 1e-3, ""),
-    ];
-    for (name, case, wanted, share, words) in rows {
-        let Some(dir) = kind(name) else { return };
+    type Right = (String, String, String, f64, f64, String);
+    for (name, case, place, right, share, words) in rows::<Vec<Right>>("practice5_spectra", "right") {
+        let Some(dir) = kind(&name) else { return };
         let (said, result) = predicted(dir.path(), &format!("{case}.toml"));
-        match wanted {
-            Passes(passes) => is_near(&result["passes"], passes, share, case),
-            Cycles(cycles) => is_near(&result["life_cycles"], cycles, share, case),
-        }
-        assert!(said.contains(words), "{name}, {case}: {said}");
+        is_near(&result[place], right, share, &case);
+        assert!(said.contains(&words), "{name}, {case}: {said}");
     }
 }
 
