@@ -49,7 +49,6 @@ mod practice;
 mod quadrature;
 mod rate_tables;
 mod rates;
-mod reading_columns;
 mod record;
 mod report;
 mod residual_strength;

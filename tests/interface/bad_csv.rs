@@ -6,6 +6,7 @@ use tempfile::tempdir;
 
 use super::cli::{assert_refused, perilife, texts};
 
+use crate::support::desk::{desk, done};
 use crate::support::rows::rows;
 
 /// A panel of half width 76.2 mm.
@@ -19,8 +20,7 @@ const ROWS: &str = "S1,0,9.0\nS1,1000,9.2\nS1,2000,9.4\nS1,3000,9.6\n";
 
 #[test]
 fn every_broken_curve_is_refused_with_place_value_and_remedy() {
-    let folder = tempdir().unwrap();
-    fs::write(folder.path().join("panel.toml"), PANEL).unwrap();
+    let folder = desk(&[("panel.toml", &PANEL)]);
     let text = rows::<Vec<(String, String, [String; 4])>>("bad_csv", "broken").into_iter();
     let picture = b"cycles,crack_length_mm\n\x89PNG\xff\xd8\0,1\n".to_vec();
     let picture = ("a picture".to_owned(), picture, [":2: ", "", "is not text", "CSV in UTF-8"].map(str::to_owned));
@@ -50,8 +50,7 @@ fn files_that_cannot_be_read_end_with_four() {
 
 #[test]
 fn unusual_but_right_files_are_read() {
-    let folder = tempdir().unwrap();
-    fs::write(folder.path().join("panel.toml"), PANEL).unwrap();
+    let folder = desk(&[("panel.toml", &PANEL)]);
     let plain = format!("{HEADER}{ROWS}S1,4000,9.9\n");
     let crlf = plain.replace('\n', "\r\n");
     let decimal_comma = plain.replace(',', ";").replace('.', ",");
@@ -59,9 +58,8 @@ fn unusual_but_right_files_are_read() {
     let together = format!("\u{feff}{}", decimal_comma.replace('\n', "\r\n"));
     let rates = |name: &str, text: &str| {
         fs::write(folder.path().join(name), text).unwrap();
-        let output = perilife(folder.path(), &["rates", name, "--specimen", "panel.toml", "--method", "secant"]);
-        assert_eq!(output.status.code(), Some(0), "{name}: {}", texts(&output).1);
-        texts(&output).0
+        let (stdout, _) = done(folder.path(), &["rates", name, "--specimen", "panel.toml", "--method", "secant"]);
+        stdout
     };
     let expected = rates("plain.csv", &plain);
     assert!(

@@ -11,7 +11,8 @@ use perilife_runner::catalogue;
 use perilife_scenes::Scene;
 use proptest::prelude::*;
 
-use crate::interface::cli::{self, perilife, texts};
+use crate::interface::cli::{perilife, texts};
+use crate::support::desk::desk;
 use crate::support::rows::rows;
 
 /// Good files of both sorts by name.
@@ -128,8 +129,7 @@ fn cases_and_scenes_are_sent_to_their_command() {
         let error = read_text(false, text, &[]).unwrap_err().to_string();
         assert!(error.contains("perilife fracture") && (text != &bare || error.contains("loading.kind")), "{error}");
     }
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("case.toml"), cli::SMALL_CASE).unwrap();
+    let folder = desk(&[("case.toml", &cli::SMALL_CASE)]);
     let output = perilife(folder.path(), &["fracture", "case.toml", "--out", "run"]);
     cli::assert_refused(&output, 2, &["case.toml", "perilife predict"]);
 }

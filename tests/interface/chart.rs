@@ -5,15 +5,14 @@ use std::fs;
 use serde_json::Value;
 use tempfile::tempdir;
 
-use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife};
+use crate::support::desk::done;
 
 #[test]
 fn a_quick_scene_leaves_table_picture_and_summary() {
     let dir = tempdir().unwrap();
     let call = ["bench", "tension_plate", "--quick", "--json", "--out", "out"];
-    let output = perilife(dir.path(), &call);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let (stdout, _) = done(dir.path(), &call);
     let object: Value = serde_json::from_str(&stdout).expect("one JSON object and nothing else");
     let read = |file: &str| fs::read_to_string(dir.path().join("out").join(file)).unwrap();
     let table = read("chart.csv");
@@ -45,16 +44,14 @@ fn a_quick_scene_leaves_table_picture_and_summary() {
     // Again: nothing is left to run, not even a line that was broken off; the table stays but for what the machine says of itself.
     let runs = read("runs.jsonl");
     fs::write(dir.path().join("out/runs.jsonl"), format!("{runs}{{\"request\":")).unwrap();
-    assert_eq!(perilife(dir.path(), &call).status.code(), Some(0));
+    done(dir.path(), &call);
     assert_eq!(read("chart.csv"), table);
 }
 
 #[test]
 fn a_point_is_repeated_by_its_command() {
     let dir = tempdir().unwrap();
-    let output = perilife(dir.path(), &["chart", "tension_plate", "--once", "--set", "model.spacing_mm=4"]);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let (stdout, _) = done(dir.path(), &["chart", "tension_plate", "--once", "--set", "model.spacing_mm=4"]);
     assert!(stdout.contains("error") && stdout.contains("MB"), "{stdout}");
 }
 
@@ -80,7 +77,7 @@ fn bad_calls_are_refused() {
 fn runs_of_another_version_are_not_mixed_in() {
     let dir = tempdir().unwrap();
     let call = ["chart", "tension_plate", "--quick", "--out", "out"];
-    assert_eq!(perilife(dir.path(), &call).status.code(), Some(0));
+    done(dir.path(), &call);
     let file = dir.path().join("out/runs.jsonl");
     let other = fs::read_to_string(&file).unwrap().replacen("\"version\":\"", "\"version\":\"0.0.", 1);
     fs::write(&file, other).unwrap();

@@ -9,6 +9,7 @@ use assert_cmd::cargo::cargo_bin;
 use tempfile::tempdir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::desk::desk;
 
 /// A slant crack that takes seconds, its window moving several times.
 const CASE: &str = r#"
@@ -158,8 +159,7 @@ fn a_killed_scene_goes_on_to_the_same_files() {
 #[test]
 fn places_and_times_for_a_checkpoint_are_checked_first() {
     for (command, input) in [("predict", CASE), ("fracture", crate::interface::fracture::SCENE)] {
-        let dir = tempdir().unwrap();
-        fs::write(dir.path().join("case.toml"), input).unwrap();
+        let dir = desk(&[("case.toml", &input)]);
         fs::create_dir(dir.path().join("folder")).unwrap();
         let call = |more: &[&str]| perilife(dir.path(), &[&[command, "case.toml", "--out", "run"], more].concat());
         assert_refused(&call(&["--checkpoint", "folder"]), 4, &["folder: cannot read"]);

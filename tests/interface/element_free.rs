@@ -7,6 +7,7 @@ use serde_json::Value;
 use tempfile::tempdir;
 
 use crate::interface::cli::{perilife, texts};
+use crate::support::desk::{desk, done, json};
 
 const CASE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 60\nlength_mm = 100\nthickness_mm = 2\n\
                     cracks = [{ from_mm = [-7, -5], to_mm = [7, 5] }]\n\
@@ -17,16 +18,13 @@ const CASE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 60\nlength_mm = 100
 
 #[test]
 fn a_run_on_nodes_has_its_files() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("case.toml"), CASE.replace("crack_length_mm = 30", "crack_length_mm = 20")).unwrap();
-    let output = perilife(dir.path(), &["predict", "case.toml", "--out", "run", "--paraview"]);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stdout}{stderr}");
+    let dir = desk(&[("case.toml", &CASE.replace("crack_length_mm = 30", "crack_length_mm = 20"))]);
+    let (stdout, stderr) = done(dir.path(), &["predict", "case.toml", "--out", "run", "--paraview"]);
     assert!(stdout.contains("  Method         element_free_galerkin, "), "{stdout}");
     for file in ["a_n.csv", "crack_path.csv", "a_n.svg", "nodes.svg", "stress.svg", "paraview/run.pvd"] {
         assert!(dir.path().join("run").join(file).is_file(), "{file}");
     }
-    let result: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("run/result.json")).unwrap()).unwrap();
+    let result = json(dir.path().join("run/result.json"));
     assert_eq!(result["model"]["method"], "element_free_galerkin", "{result}");
     assert_eq!(result["stop_reason"], "crack_length_reached");
     let checked = perilife(dir.path(), &["check", "case.toml", "-v"]);
@@ -56,8 +54,7 @@ fn keys_that_do_not_go_together_are_refused_by_name() {
         ("model.enrichment=strong", "model.enrichment"),
         ("model.basis=cubic", "model.basis"),
     ] {
-        let dir = tempdir().unwrap();
-        fs::write(dir.path().join("case.toml"), CASE).unwrap();
+        let dir = desk(&[("case.toml", &CASE)]);
         let output = perilife(dir.path(), &["predict", "case.toml", "--set", key, "--out", "run"]);
         let (_, stderr) = texts(&output);
         assert_eq!(output.status.code(), Some(2), "{key}: {stderr}");
@@ -66,8 +63,7 @@ fn keys_that_do_not_go_together_are_refused_by_name() {
     }
     // Keys of nodes with another method.
     for key in ["model.nodes=500", "model.enrichment=tip", "model.influence_radius=2.5"] {
-        let dir = tempdir().unwrap();
-        fs::write(dir.path().join("case.toml"), CASE).unwrap();
+        let dir = desk(&[("case.toml", &CASE)]);
         let output =
             perilife(dir.path(), &["predict", "case.toml", "--set", "model.method=peridynamics", "--set", key, "--out", "run"]);
         let (_, stderr) = texts(&output);
@@ -85,8 +81,7 @@ fn cracks_that_nodes_do_not_know_are_refused_with_what_does() {
         ("holes = [{ x_mm = 0, y_mm = 0, diameter_mm = 9 }]", "predict", ["specimen.cracks", "perilife sif"]),
         ("holes = [{ x_mm = 0, y_mm = 0, diameter_mm = 9 }]", "check", ["specimen.cracks", "perilife sif"]),
     ] {
-        let dir = tempdir().unwrap();
-        fs::write(dir.path().join("case.toml"), CASE.replace(cracks, instead)).unwrap();
+        let dir = desk(&[("case.toml", &CASE.replace(cracks, instead))]);
         let arguments = ["predict", "case.toml", "--out", "run"];
         let arguments = if command == "predict" { &arguments[..] } else { &["check", "case.toml"] };
         let output = perilife(dir.path(), arguments);
@@ -134,8 +129,7 @@ fn cracks_side_by_side_are_refused_with_the_gap() {
 
 #[test]
 fn too_few_nodes_for_a_basis_are_named() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("case.toml"), CASE).unwrap();
+    let dir = desk(&[("case.toml", &CASE)]);
     let set = ["model.basis=quadratic", "model.enrichment=none", "model.influence_radius=1.5"];
     let output =
         perilife(dir.path(), &["predict", "case.toml", "--set", set[0], "--set", set[1], "--set", set[2], "--out", "run"]);
@@ -166,9 +160,7 @@ fn a_plate_without_cracks_has_the_stress_of_its_holes() {
     assert_eq!(output.status.code(), Some(2), "{stdout}{stderr}");
     assert!(stderr.contains("--out") && stderr.contains("--method element_free_galerkin"), "{stderr}");
     let by_nodes = ["sif", "hole.toml", "--method", "element_free_galerkin", "--out", "run"];
-    let output = perilife(dir.path(), &[&by_nodes[..], &["--json", "--paraview"]].concat());
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stdout}{stderr}");
+    let (stdout, stderr) = done(dir.path(), &[&by_nodes[..], &["--json", "--paraview"]].concat());
     let found: Value = serde_json::from_str(&stdout).unwrap();
     let rim = &found["stresses"]["rims"][0];
     // Peterson's fit at d/W = 0.2: (3.00 - 3.14 x + 3.667 x² - 1.527 x³)/(1 - x), 0.5 %.
@@ -182,7 +174,7 @@ fn a_plate_without_cracks_has_the_stress_of_its_holes() {
     for file in ["result.json", "stress.svg", "nodes.svg", "paraview/run.pvd", "case.toml"] {
         assert!(dir.path().join("run").join(file).is_file(), "{file}");
     }
-    let kept: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("run/result.json")).unwrap()).unwrap();
+    let kept = json(dir.path().join("run/result.json"));
     assert_eq!(kept["stresses"], found["stresses"]);
     // Nothing is said but how far the peak has settled.
     assert!(stderr.lines().all(|line| line.contains("still changed by")), "{stderr}");

@@ -7,6 +7,7 @@ use serde_json::Value;
 use tempfile::tempdir;
 
 use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
+use crate::support::desk::{desk, done};
 
 const PANEL: &str = r#"
 [specimen]
@@ -29,12 +30,9 @@ paris_m = 2.874
 
 #[test]
 fn a_hand_calculation_leaves_the_files_of_a_run() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("panel.toml"), PANEL).unwrap();
+    let dir = desk(&[("panel.toml", &PANEL)]);
     let arguments = ["predict", "panel.toml", "--out", "run", "--residual-strength", "--json", "-v"];
-    let output = perilife(dir.path(), &arguments);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let (stdout, stderr) = done(dir.path(), &arguments);
     // Yield strength of the material file: 345 MPa.
     let result: Value = serde_json::from_str(&stdout).unwrap();
     let passed = |check: &Value| check["name"] == "small_scale_yielding" && check["verdict"] == "passed";
@@ -63,7 +61,7 @@ fn a_hand_calculation_leaves_the_files_of_a_run() {
     assert_eq!((first[2], first[4]), ("", "net_section_yield"));
 
     // Export and check know it as well.
-    assert_eq!(perilife(dir.path(), &["export", "run", "--points", "50", "--out", "e.csv"]).status.code(), Some(0));
+    done(dir.path(), &["export", "run", "--points", "50", "--out", "e.csv"]);
     let (stdout, _) = texts(&perilife(dir.path(), &["check", "panel.toml", "-v"]));
     assert!(stdout.contains("Handbook K") && stdout.contains("8.95422e-8") && !stdout.contains("ageing"), "{stdout}");
     let (stdout, _) = texts(&perilife(dir.path(), &["predict", "panel.toml", "--out", "run"]));
@@ -87,8 +85,7 @@ fn a_plate_is_refused_with_the_remedy() {
 
 #[test]
 fn the_engine_writes_plastic_zone_and_residual_strength_too() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    let dir = desk(&[("small.toml", &SMALL_CASE)]);
     // Refused before anything is computed: no strength is given.
     let call = ["predict", "small.toml", "--out", "run", "--residual-strength", "--json"];
     let output = perilife(dir.path(), &call);
@@ -110,9 +107,7 @@ fn the_engine_writes_plastic_zone_and_residual_strength_too() {
         ],
     ]
     .concat();
-    let output = perilife(dir.path(), &call);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let (stdout, stderr) = done(dir.path(), &call);
     let result: Value = serde_json::from_str(&stdout).unwrap();
     let zone = &result["plastic_zone"]["last"];
     let [size, over_horizon] = ["size_mm", "over_horizon"].map(|key| zone[key].as_f64().unwrap());
@@ -126,11 +121,8 @@ fn the_engine_writes_plastic_zone_and_residual_strength_too() {
 /// What the program chooses, how wrong the life may be, and what the other engine says of it.
 #[test]
 fn a_life_comes_with_its_error_and_a_second_opinion() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("panel.toml"), PANEL.replace("method = \"handbook\"", "")).unwrap();
-    let output = perilife(dir.path(), &["predict", "panel.toml", "--out", "run", "--cross-check"]);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let dir = desk(&[("panel.toml", &PANEL.replace("method = \"handbook\"", ""))]);
+    let (stdout, _) = done(dir.path(), &["predict", "panel.toml", "--out", "run", "--cross-check"]);
     for words in
         ["handbook K (Feddersen secant)", "numerical error ≤ 0.9 % of life (estimate)", "Cross-check    element_free_galerkin"]
     {

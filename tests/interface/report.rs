@@ -7,6 +7,7 @@ use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::desk::{desk, done, json};
 
 const PANEL: &str = r#"
 [specimen]
@@ -51,20 +52,19 @@ fn readings() -> String {
 
 /// `run` and `fit` beside the inputs that they were made from.
 fn folders() -> TempDir {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("panel.toml"), format!("{PANEL}{LAW}[stop]\ncrack_length_mm = 40.0\n")).unwrap();
-    fs::write(dir.path().join("n.csv"), readings()).unwrap();
-    fs::write(dir.path().join("fit.toml"), format!("{MEASURED}{PANEL}")).unwrap();
+    let dir = desk(&[
+        ("panel.toml", &format!("{PANEL}{LAW}[stop]\ncrack_length_mm = 40.0\n")),
+        ("n.csv", &readings()),
+        ("fit.toml", &format!("{MEASURED}{PANEL}")),
+    ]);
     for call in [["predict", "panel.toml", "--out", "run"], ["calibrate", "fit.toml", "--out", "fit"]] {
-        let output = perilife(dir.path(), &call);
-        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+        done(dir.path(), &call);
     }
     dir
 }
 
 fn report(folder: &Path, of: &str, more: &[&str]) -> String {
-    let output = perilife(folder, &[&["report", of, "--out", "r.html"], more].concat());
-    assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+    done(folder, &[&["report", of, "--out", "r.html"], more].concat());
     fs::read_to_string(folder.join("r.html")).unwrap()
 }
 
@@ -74,9 +74,7 @@ fn assert_alone(page: &str) {
         assert!(!page.contains(outside), "{outside} in the page");
     }
     assert!(page.starts_with("<!doctype html>") && page.ends_with("</html>\n") && !page.contains("NaN"), "whole, without NaN");
-    for what in ["@page", "counter(page) \" of \" counter(pages)", "@media print", "role=\"img\""] {
-        assert!(page.contains(what), "{what}");
-    }
+    assert_says(&page, &["@page", "counter(page) \" of \" counter(pages)", "@media print", "role=\"img\""]);
     let (open, close) = (page.matches("<svg").count(), page.matches("</svg>").count());
     assert!(open == close && open > 3, "{open} drawings, {close} ends");
 }
@@ -90,30 +88,31 @@ fn a_run_has_a_page_with_life_validity_and_hashes() {
         &["--laboratory", "Lab <1> & \"Co\"", "--operator", "A. Tester", "--date", "26 Nov 2026", "--set", "report.number=R-12"],
     );
     assert_alone(&page);
-    let result: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("run/result.json")).unwrap()).unwrap();
+    let result = json(dir.path().join("run/result.json"));
     let hash = result["inputs"][0]["sha256"].as_str().unwrap();
     let version = result["version"].as_str().unwrap();
-    for words in [
-        "Lab &lt;1&gt; &amp; &quot;Co&quot;",
-        "A. Tester",
-        "26 Nov 2026",
-        "Cycles to the crack length limit",
-        "crack length limit reached",
-        "scatter band not available",
-        "valid with reservations",
-        "Fracture: not checked (no toughness given)",
-        "Numerical error ≤ 0.86 % of life (estimate)",
-        "stress 12.07 to 60.35 MPa, R = 0.2",
-        "al2024-t3",
-        hash,
-        version,
-        "Report No.</dt><dd>R-12</dd><dt>Customer</dt><dd><span class=\"blank\">not recorded</span>",
-        "Reviewed by, date: </div>",
-        "tests/VALIDATION.md of this version",
-        "content: \"R-12, Crack growth life, panel, perilife ",
-    ] {
-        assert!(page.contains(words), "{words}");
-    }
+    assert_says(
+        &page,
+        &[
+            "Lab &lt;1&gt; &amp; &quot;Co&quot;",
+            "A. Tester",
+            "26 Nov 2026",
+            "Cycles to the crack length limit",
+            "crack length limit reached",
+            "scatter band not available",
+            "valid with reservations",
+            "Fracture: not checked (no toughness given)",
+            "Numerical error ≤ 0.86 % of life (estimate)",
+            "stress 12.07 to 60.35 MPa, R = 0.2",
+            "al2024-t3",
+            hash,
+            version,
+            "Report No.</dt><dd>R-12</dd><dt>Customer</dt><dd><span class=\"blank\">not recorded</span>",
+            "Reviewed by, date: </div>",
+            "tests/VALIDATION.md of this version",
+            "content: \"R-12, Crack growth life, panel, perilife ",
+        ],
+    );
     assert!(!page.contains("<1>"), "names are no markup");
     // The drawings are those of the folder, at another size: the same points along the curve.
     let k = fs::read_to_string(dir.path().join("run/k.svg")).unwrap();
@@ -141,19 +140,20 @@ fn a_fit_has_a_page_with_every_reading() {
     assert!(table.contains("excluded: load of the &lt;precrack&gt;"), "with its reason");
     assert!(table.contains("excluded: outside the fit window"), "P2 starts below the window");
     assert_eq!(table.matches("step under 0.25 mm").count(), 4, "both readings of the short step of both panels");
-    let fit: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("fit/fit.json")).unwrap()).unwrap();
+    let fit = json(dir.path().join("fit/fit.json"));
     assert!((fit["paris_m"].as_f64().unwrap() - 2.874).abs() < 0.05, "{fit}");
-    for words in [
-        "Criteria of ASTM E647",
-        "2 of 78 increments are shorter; used and flagged",
-        "not checked (one crack size per reading)",
-        "Test machine, load cell</dt><dd><span class=\"blank\">not recorded",
-        "Crack plane orientation</dt><dd>L-T</dd>",
-        "Report No.</dt><dd>F-3, revision 2</dd>",
-        fit["inputs"][1]["sha256"].as_str().unwrap(),
-    ] {
-        assert!(page.contains(words), "{words}");
-    }
+    assert_says(
+        &page,
+        &[
+            "Criteria of ASTM E647",
+            "2 of 78 increments are shorter; used and flagged",
+            "not checked (one crack size per reading)",
+            "Test machine, load cell</dt><dd><span class=\"blank\">not recorded",
+            "Crack plane orientation</dt><dd>L-T</dd>",
+            "Report No.</dt><dd>F-3, revision 2</dd>",
+            fit["inputs"][1]["sha256"].as_str().unwrap(),
+        ],
+    );
     // The rates are those of `perilife rates` by the same polynomial.
     let rates = texts(&perilife(dir.path(), &["rates", "n.csv", "--specimen", "panel.toml"])).0;
     let of_panel = rates.lines().find(|line| line.starts_with("P2,") && line.contains("e-")).unwrap();
@@ -262,11 +262,10 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
             &more.split_whitespace().collect::<Vec<_>>()[..],
         ]
         .concat();
-        let output = perilife(dir.path(), &arguments);
-        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+        done(dir.path(), &arguments);
         let page = report(dir.path(), "run", &[]);
         assert_alone(&page);
-        (page, serde_json::from_str::<Value>(&fs::read_to_string(dir.path().join("run/result.json")).unwrap()).unwrap())
+        (page, json(dir.path().join("run/result.json")))
     };
     let assert_says = |page: &str, all: &[&str]| all.iter().for_each(|words| assert!(page.contains(words), "{words}"));
     // Thousands apart, as the report writes them.

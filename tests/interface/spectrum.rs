@@ -4,10 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use tempfile::tempdir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
-use crate::support::rows::rows;
+use crate::support::desk::{desk, json};
+use crate::support::rows::{assert_says, rows};
 
 const CASE: &str = r#"[specimen]
 kind = "middle_tension"
@@ -38,8 +38,7 @@ const WHEELER: &str = "spectrum_scale_mpa = 100.0\nretardation = \"wheeler\"\nwh
 
 /// Runs a command on the case, changed, with this spectrum.
 fn run(case: &str, file: &str, content: &str, arguments: &[&str]) -> (tempfile::TempDir, std::process::Output) {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("case.toml"), case).unwrap();
+    let dir = desk(&[("case.toml", &case)]);
     fs::write(dir.path().join(file), content).unwrap();
     let output = perilife(dir.path(), arguments);
     (dir, output)
@@ -79,16 +78,17 @@ fn check_and_predict_say_what_the_spectrum_is() {
     let wheeler = CASE.replace("spectrum_scale_mpa = 100.0\n", WHEELER);
     let (_, output) = run(&wheeler, "flights.csv", FLIGHTS, &["check", "case.toml", "-v"]);
     let (stdout, stderr) = texts(&output);
-    for words in ["5 to 100 MPa", "flights.csv (cycles): 61 cycles a pass", "3 kinds", "repeated until failure", "wheeler"] {
-        assert!(stdout.contains(words), "{words} in {stdout}{stderr}");
-    }
+    assert_says(
+        &stdout,
+        &["5 to 100 MPa", "flights.csv (cycles): 61 cycles a pass", "3 kinds", "repeated until failure", "wheeler"],
+    );
     let mut lives = Vec::new();
     for case in [CASE, &wheeler] {
         let (dir, output) = run(case, "flights.csv", FLIGHTS, &["predict", "case.toml", "--out", "run"]);
         let (stdout, stderr) = texts(&output);
         assert_eq!(output.status.code(), Some(0), "{stdout}{stderr}");
         let folder = dir.path().join("run");
-        let result: Value = serde_json::from_str(&fs::read_to_string(folder.join("result.json")).unwrap()).unwrap();
+        let result = json(folder.join("result.json"));
         let life = result["life_cycles"].as_f64().unwrap();
         assert!((result["passes"].as_f64().unwrap() * 61.0 / life - 1.0).abs() < 1e-9);
         assert_eq!(result["spectrum"]["cycles_per_pass"], 61.0);

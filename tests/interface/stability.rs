@@ -6,14 +6,13 @@ use serde_json::Value;
 use tempfile::tempdir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::desk::done;
 
 /// Columns that users rely on, a row a run, pictures, and a name that is no sweep.
 #[test]
 fn a_sweep_is_written_as_table_and_pictures() {
     let dir = tempdir().unwrap();
-    let output = perilife(dir.path(), &["stability", "density_factor", "reading_count", "--quick", "--json", "--out", "map"]);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let (stdout, _) = done(dir.path(), &["stability", "density_factor", "reading_count", "--quick", "--json", "--out", "map"]);
     let object: Value = serde_json::from_str(&stdout).expect("one JSON object and nothing else");
     let read = |name: &str| fs::read_to_string(dir.path().join("map").join(name)).unwrap();
     let table = read("stability.csv");

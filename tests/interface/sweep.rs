@@ -7,10 +7,11 @@ use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::cargo_bin;
 use serde_json::Value;
-use tempfile::{TempDir, tempdir};
+use tempfile::TempDir;
 
 use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
 use crate::interface::service::jobs::with_store;
+use crate::support::desk::{desk, done, json};
 use crate::support::server::{PATIENCE, Server, in_folder};
 use crate::support::slurm::Slurm;
 
@@ -24,18 +25,8 @@ pub const GRID: &str = "case = \"panel.toml\"\n[design]\nkind = \"grid\"\n[[vary
     values = [8.0, 9.5]\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nfrom = 40\nto = 60\ncount = 3\n";
 
 pub fn folder_with(sweep: &str) -> TempDir {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("panel.toml"), PANEL).unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
-    fs::write(dir.path().join("sweep.toml"), sweep).unwrap();
+    let dir = desk(&[("panel.toml", &PANEL), ("small.toml", &SMALL_CASE), ("sweep.toml", &sweep)]);
     dir
-}
-
-fn done(folder: &Path, arguments: &[&str]) -> String {
-    let output = perilife(folder, arguments);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}{stdout}");
-    stdout
 }
 
 /// Rows of a table without `wall_s`, which differs from run to run.
@@ -47,15 +38,11 @@ fn rows(folder: &Path) -> Vec<Vec<String>> {
     rows
 }
 
-fn json(path: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
-}
-
 #[test]
 fn a_grid_gives_the_lives_of_single_predictions() {
     let dir = folder_with(GRID);
     let here = dir.path();
-    let stdout = done(here, &["sweep", "sweep.toml", "--out", "out", "--threads", "3"]);
+    let (stdout, _) = done(here, &["sweep", "sweep.toml", "--out", "out", "--threads", "3"]);
     assert!(stdout.contains("6 cases, 6 succeeded, 0 failed") && stdout.contains("median"), "{stdout}");
     let rows = rows(&here.join("out"));
     let head = "case,specimen.crack_length_mm,loading.stress_range_mpa,life_cycles,stop_reason,crack_length_final_mm,problem,life_is_lower_bound";
@@ -88,7 +75,7 @@ fn a_grid_gives_the_lives_of_single_predictions() {
     assert_eq!(fs::read_dir(here).unwrap().count(), 5, "no temporary folder stays");
 
     // Summaries alone, and the figures on stdout.
-    let stdout = done(here, &["sweep", "sweep.toml", "--out", "brief", "--summary-only", "--json"]);
+    let (stdout, _) = done(here, &["sweep", "sweep.toml", "--out", "brief", "--summary-only", "--json"]);
     assert_eq!(serde_json::from_str::<Value>(&stdout).unwrap(), json(&here.join("brief/sweep.json")));
     assert_eq!(self::rows(&here.join("brief")), rows);
     assert!(!here.join("brief/cases/0001/a_n.csv").exists());
@@ -164,7 +151,7 @@ fn a_failing_case_is_a_row() {
     let design = "[design]\nkind = \"grid\"\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nvalues = [48.28, 130.0]\n";
     let dir = folder_with(&format!("case = {:?}\n{design}", panel.display().to_string()));
     let here = dir.path();
-    let stdout = done(here, &["sweep", "sweep.toml", "--out", "out"]);
+    let (stdout, _) = done(here, &["sweep", "sweep.toml", "--out", "out"]);
     assert!(
         stdout.contains("1 succeeded, 1 failed") && stdout.contains("failed         0002: fatigue.allow_extrapolation"),
         "{stdout}"

@@ -3,9 +3,9 @@
 use std::fs;
 
 use serde_json::Value;
-use tempfile::tempdir;
 
 use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
+use crate::support::desk::{desk, done};
 
 const PLATE: &str = r#"
 [specimen]
@@ -30,11 +30,8 @@ paris_m = 2.874
 
 #[test]
 fn constants_of_k_choose_the_driver_of_tips() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("plate.toml"), PLATE).unwrap();
-    let output = perilife(dir.path(), &["predict", "plate.toml", "--out", "run", "--json"]);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let dir = desk(&[("plate.toml", &PLATE)]);
+    let (stdout, _) = done(dir.path(), &["predict", "plate.toml", "--out", "run", "--json"]);
     let result: Value = serde_json::from_str(&stdout).unwrap();
     assert_eq!(result["model"]["driver"], "tip_field");
     assert_eq!(result["model"]["surface_correction"], "balanced");
@@ -62,8 +59,7 @@ fn constants_of_k_choose_the_driver_of_tips() {
 
 #[test]
 fn what_does_not_go_with_the_driver_is_refused() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("plate.toml"), PLATE).unwrap();
+    let dir = desk(&[("plate.toml", &PLATE)]);
     let slot = PLATE.replace(
         "cracks = [{ from_mm = [-20.0, 0.0], to_mm = [-8.0, 0.0] }]",
         "notches = [{ from_mm = [-20.0, 0.0], to_mm = [-8.0, 0.0], width_mm = 2.0 }]",
@@ -91,14 +87,11 @@ fn what_does_not_go_with_the_driver_is_refused() {
 /// A crack below its threshold is not told to be dead after 0 cycles: its life has no end, whatever computes it.
 #[test]
 fn a_crack_that_stands_still_has_no_life_that_ends() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    let dir = desk(&[("small.toml", &SMALL_CASE)]);
     for set in ["fatigue.driver=tip_field", "fatigue.driver=bond_strain", "model.method=handbook"] {
         let threshold = "fatigue.delta_k_threshold_mpa_sqrt_m=90";
         let call = ["predict", "small.toml", "--out", "run", "--set", set, "--set", threshold];
-        let output = perilife(dir.path(), &[&call[..], &["--json"]].concat());
-        let (stdout, stderr) = texts(&output);
-        assert_eq!(output.status.code(), Some(0), "{set}: {stderr}");
+        let (stdout, _) = done(dir.path(), &[&call[..], &["--json"]].concat());
         let result: Value = serde_json::from_str(&stdout).unwrap();
         assert_eq!(result["stop_reason"], "nothing_ages", "{set}");
         assert!(result["life_cycles"].is_null() && result.get("life_cycles").is_some(), "{set}: {stdout}");

@@ -9,7 +9,7 @@ use perilife_results::curve::read_a_n;
 use serde_json::Value;
 use tempfile::tempdir;
 
-use crate::interface::cli::{perilife, texts};
+use crate::support::desk::done;
 
 /// Names without a unit: counts, cycles, shares, ratios and exponents. A number under any other name without one would be a length, a stress or the
 /// like that nobody converts.
@@ -41,9 +41,7 @@ fn near(a: f64, b: f64) -> bool {
 
 /// A run of the program in `dir`; it ended well. All that it printed.
 fn run(dir: &Path, arguments: &[&str]) -> String {
-    let output = perilife(dir, arguments);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {stderr}");
+    let (stdout, stderr) = done(dir, arguments);
     stdout + &stderr
 }
 

@@ -7,6 +7,7 @@ use tempfile::tempdir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
 use crate::support::daily::{PANEL, names, write_inputs};
+use crate::support::desk::done;
 
 const SOURCE: &str = "[source]\ntitle = \"Panel\"\nreference = \"=1+1\"\nobtained = \"o\"\nassumed = \"a\"\nuncertainty = \"u\"\nlicence = \"l\"\n";
 
@@ -23,9 +24,7 @@ fn own_tests_stand_beside_published_ones() {
                  others = \"hand\"\nothers_life = 120000\n";
     put("source.toml", &format!("{SOURCE}{tests}"));
     let call = ["validate", "own", "aa3003_bm_later", "--json", "--out", "out", "--markdown", "page.md"];
-    let output = perilife(dir.path(), &call);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let (stdout, _) = done(dir.path(), &call);
     let object: Value = serde_json::from_str(&stdout).expect("one JSON object and nothing else");
     let row = &object["rows"][0];
     let run: Value =

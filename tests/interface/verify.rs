@@ -5,16 +5,15 @@ use std::fs;
 use serde_json::Value;
 use tempfile::tempdir;
 
-use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife};
+use crate::support::desk::done;
 
 /// The table is the same text however long its rows took; JSON names both bounds of every row.
 #[test]
 fn rows_are_written_as_markdown_and_as_json() {
     let dir = tempdir().unwrap();
     let tables = ["first.md", "second.md"].map(|file| {
-        let output = perilife(dir.path(), &["verify", "golden", "--json", "--markdown", file]);
-        let (stdout, stderr) = texts(&output);
-        assert_eq!(output.status.code(), Some(0), "{stderr}");
+        let (stdout, _) = done(dir.path(), &["verify", "golden", "--json", "--markdown", file]);
         let object: Value = serde_json::from_str(&stdout).expect("one JSON object and nothing else");
         let rows = object["rows"].as_array().unwrap();
         assert!(rows.len() >= 12, "{}", rows.len());

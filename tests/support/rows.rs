@@ -15,6 +15,6 @@ pub fn rows<T: DeserializeOwned>(file: &str, table: &str) -> T {
 
 /// A message holds all these words.
 #[track_caller]
-pub fn assert_says(message: &str, words: &[impl AsRef<str>], of: &str) {
-    words.iter().for_each(|words| assert!(message.contains(words.as_ref()), "{of}: {} in {message}", words.as_ref()));
+pub fn assert_says(message: &str, words: &[impl AsRef<str>]) {
+    words.iter().for_each(|words| assert!(message.contains(words.as_ref()), "{} in {message}", words.as_ref()));
 }

@@ -65,6 +65,14 @@ impl Server {
         Server { process, url, agent: agent(), token: None }
     }
 
+    /// Starts the service on a store in a folder of its own.
+    pub fn alone(more: &[&str]) -> (tempfile::TempDir, Server) {
+        let dir = tempfile::tempdir().unwrap();
+        let place = in_folder(dir.path());
+        let service = Server::start(&[&place[0], &place[1]], more);
+        (dir, service)
+    }
+
     /// Starts a worker without a door.
     pub fn worker(place: &[&str], more: &[&str]) -> Server {
         let (process, line) = started(&[&["worker"], place, more].concat(), &[]);

@@ -12,6 +12,7 @@ use perilife_calibration::results::record;
 use perilife_growth::predict::Silent;
 
 use crate::support::fatigue_test::{calibration, lengths, readings};
+use crate::support::rows::{assert_says, rows};
 
 const C: f64 = 1e-8;
 const M: f64 = 3.0;
@@ -193,37 +194,10 @@ fn text_with_header(rows: &str) -> String {
 #[test]
 fn broken_windows_are_refused() {
     let csv = format!("cycles,crack_length_mm\n{}", rows(&plain(0.5), |_| String::new()));
-    let window = |keys: &str| format!("leave_out = [{{ {keys} }}]");
-    let broken = [
-        (
-            "another specimen",
-            window("specimen = \"B\", from_cycles = 0, to_cycles = 1e4, reason = \"x\""),
-            "specimen = \"B\": is not a specimen",
-        ),
-        ("no reason", window("from_cycles = 0, to_cycles = 1e4"), "reason: is missing"),
-        ("an empty reason", window("from_cycles = 0, to_cycles = 1e4, reason = \" \""), "has an empty reason"),
-        ("half a window", window("from_cycles = 0, reason = \"x\""), "is neither a row nor cycles"),
-        ("a row and cycles", window("line = 2, from_cycles = 0, to_cycles = 1, reason = \"x\""), "is neither a row nor cycles"),
-        (
-            "no such line",
-            window("line = 999, value = \"0\", reason = \"x\""),
-            "is not a cell of line 999 of test.csv, which has no row",
-        ),
-        ("another value", window("line = 2, value = \"7x\", reason = \"x\""), "is not a cell of line 2"),
-        ("no value", window("line = 2, reason = \"x\""), "is not a cell of line 2"),
-        ("another file", window("file = \"b.csv\", line = 2, value = \"0\", reason = \"x\""), "not one of measured.files"),
-        ("the wrong way", window("from_cycles = 1e4, to_cycles = 0, reason = \"x\""), "is not above from_cycles = 10000"),
-        ("beyond it", window("from_cycles = 1e8, to_cycles = 2e8, reason = \"x\""), "contains no reading of specimen test"),
-        ("everything", window("from_cycles = 0, to_cycles = 1e9, reason = \"x\""), "leaves 0 readings"),
-        ("nearly everything", window("from_cycles = 1e5, to_cycles = 1e9, reason = \"x\""), "leaves 2 readings"),
-    ];
-    for (name, keys, words) in broken {
-        let error = case(&csv, &keys).unwrap_err();
-        assert_eq!(error.exit_code(), 2, "{name}");
-        assert!(
-            error.to_string().contains(words) && error.to_string().contains("measured.leave_out"),
-            "{name}: {words} in {error}"
-        );
+    for [keys, words] in rows::<Vec<[String; 2]>>("belonging", "windows") {
+        let error = case(&csv, &format!("leave_out = [{{ {keys} }}]")).unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{keys}");
+        assert_says(&format!("{keys}: {error}"), &[&words, "measured.leave_out"]);
     }
 }
 

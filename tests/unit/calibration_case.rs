@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use crate::support::desk::desk;
 use crate::support::fits::report;
 use crate::support::rows::rows;
 use perilife_base::input::Folder;
@@ -13,7 +14,6 @@ use perilife_calibration::fit::{Bonds, Fit, FitTask, fit};
 use perilife_calibration::power_law::PowerLaw;
 use perilife_calibration::results::{fit_curves, record};
 use perilife_growth::case::record::FittedRecord;
-use tempfile::tempdir;
 
 const GOOD: &str = r#"[measured]
 files = ["curves.csv"]
@@ -39,9 +39,7 @@ const CURVES: &str = "specimen,cycles,crack_length_mm\nA,100,8\nA,1000,9\nA,2000
                       B,0,8.5\nB,500,9\nB,1600,10\nB,2600,11\nB,3450,12\nB,4200,13\n";
 
 fn read(text: &str, overrides: &[&str]) -> perilife_base::error::Result<CalibrationCase> {
-    let folder = tempdir().unwrap();
-    fs::write(folder.path().join("curves.csv"), CURVES).unwrap();
-    fs::write(folder.path().join("alloy.toml"), text).unwrap();
+    let folder = desk(&[("curves.csv", &CURVES), ("alloy.toml", &text)]);
     let overrides: Vec<String> = overrides.iter().map(|text| (*text).to_owned()).collect();
     CalibrationCase::from_file(&folder.path().join("alloy.toml"), &overrides)
 }
@@ -177,9 +175,7 @@ fn readings_say_load_and_first_crack_length_where_the_file_does_not() {
             0 => format!("{},stress_max_mpa,stress_ratio\n", line.replace("crack_length_mm", head)),
             _ => format!("{line},{},0.2\n", if line.starts_with('B') { of_b } else { "60.35" }),
         });
-        let folder = tempdir().unwrap();
-        fs::write(folder.path().join("curves.csv"), rows.collect::<String>()).unwrap();
-        fs::write(folder.path().join("alloy.toml"), text).unwrap();
+        let folder = desk(&[("curves.csv", &rows.collect::<String>()), ("alloy.toml", &text)]);
         CalibrationCase::from_file(&folder.path().join("alloy.toml"), &[])
     };
     let load = "loading: stress_max_mpa = 60.35, stress_ratio = 0.2, from the readings";

@@ -4,11 +4,13 @@ use std::path::{Path, PathBuf};
 
 use perilife_base::error::Error;
 use perilife_base::input::Folder;
-use perilife_growth::case::record::{FittedLaw, FittedRecord};
+use perilife_growth::case::record::FittedRecord;
 use perilife_growth::case::{Case, LawSource};
 use perilife_growth::predict::checkpoint::hash;
 use perilife_plate::material::library;
 use perilife_points::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
+
+use crate::support::rows::rows;
 
 const TEXT: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300\nthickness_mm = 2.54\ncrack_length_mm = 9\n\
                     [material]\nyoungs_modulus_gpa = 73.1\npoisson_ratio = 0.33\n[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n";
@@ -20,44 +22,7 @@ fn read(extra: &str, overrides: &[&str]) -> Result<Case, Error> {
 }
 
 fn record() -> FittedRecord {
-    FittedRecord {
-        method: "peridynamics".into(),
-        a: 5000.0,
-        p: 3.0,
-        horizon_mm: 3.0,
-        spacing_mm: 1.0,
-        horizon_ratio: 3.015,
-        scaling: "horizon".into(),
-        rate_constant: Some(0.19),
-        paris_c_mm_per_cycle: 1e-7,
-        paris_m: 2.9,
-        paris_m_error: 0.03,
-        pivot_delta_k_mpa_sqrt_m: 11.4,
-        rate_at_pivot_mm_per_cycle: 1e-4,
-        rate_at_pivot_relative_error: 0.01,
-        p_error: 0.02,
-        delta_k_min_mpa_sqrt_m: 8.0,
-        delta_k_max_mpa_sqrt_m: 27.0,
-        lack_of_fit_percent: None,
-        stress_ratio: 0.2,
-        bond_law: "two_parameter".into(),
-        kernel: "constant".into(),
-        rotation: "free".into(),
-        surface_correction: "none".into(),
-        ageing: "crack_tip".into(),
-        zone_radius_horizons: 0.6,
-        youngs_modulus_gpa: 73.1,
-        poisson_ratio: 0.33,
-        plane: "stress".into(),
-        thickness_mm: 2.54,
-        material: "al2024-t3".into(),
-        version: "0".into(),
-        sources: vec![],
-        law: FittedLaw::Paris,
-        curve: None,
-        left_out: Vec::new(),
-        population: None,
-    }
+    rows("records", "case")
 }
 
 #[test]

@@ -262,7 +262,7 @@ fn wrong_laws_are_refused() {
         let set: Vec<&str> = set.iter().map(String::as_str).collect();
         let error = read_with(if rates.is_empty() { RATES } else { &rates }, &text, &set).unwrap_err();
         assert_eq!(error.exit_code(), 2, "{error}");
-        assert_says(&error.to_string(), &words, &text);
+        assert_says(&format!("{text}: {error}"), &words);
     }
     let missing = Case::from_toml(&format!("{PANEL}[fatigue]\n{TABLE}"), "panel", Path::new("/nowhere"), &[]).unwrap_err();
     assert_eq!(missing.exit_code(), 4, "{missing}");

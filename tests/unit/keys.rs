@@ -11,6 +11,8 @@ use perilife_plate::specimen::SpecimenKind;
 use perilife_runner::catalogue;
 use toml::{Table, Value};
 
+use crate::support::rows::assert_says;
+
 /// A value that a key takes.
 fn some(key: &Key, shape: Shape) -> Value {
     let middle = key.quantity.map_or(1.0, |q| if q.low <= 1.0 && q.high >= 1.0 { 1.0 } else { q.low });
@@ -240,14 +242,15 @@ fn all_mistakes_of_a_file_are_told_at_once() {
     assert_eq!(input.more.len(), 3, "{error}");
     let message = error.to_string();
     assert!(message.starts_with("4 mistakes\n1. "), "{message}");
-    for words in [
-        "did you mean width_mm?",
-        "2. specimen.length_mm",
-        "3. loading.stress_ratio = \"low\": is not a number",
-        "4. stop.cycles_max",
-    ] {
-        assert!(message.contains(words), "{words}: {message}");
-    }
+    assert_says(
+        &message,
+        &[
+            "did you mean width_mm?",
+            "2. specimen.length_mm",
+            "3. loading.stress_ratio = \"low\": is not a number",
+            "4. stop.cycles_max",
+        ],
+    );
     let lines: Vec<_> = input.clone().each().iter().map(|one| one.line).collect();
     assert_eq!(lines, [Some(3), Some(4), Some(11), Some(13)]);
 }

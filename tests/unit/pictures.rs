@@ -22,6 +22,7 @@ use perilife_results::specimen_picture::specimen_svg;
 use perilife_results::{curve, vtk};
 use tempfile::tempdir;
 
+use crate::support::rows::assert_says;
 use crate::support::{made_up_case, made_up_run};
 
 const LENGTHS: [&str; 2] = ["Cycles N", "Crack length a, mm"];
@@ -203,18 +204,19 @@ fn everything_of_the_specimen_is_drawn() {
     assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n") && svg.contains("a &lt; b &amp; c"));
     // Three tips, one dot in the legend.
     assert_eq!(svg.matches(&format!(r#"r="3.6" fill="{CRACK}""#)).count(), case.specimen.tips.len() + 1);
-    for words in [
-        "100 mm",
-        "200 mm",
-        "thickness 2 mm",
-        "stress 7 to 70 MPa, R = 0.1",
-        "fixed x, y",
-        "diameter 10 mm",
-        "slot with tip 2",
-        "tips 0 and 1: 11.18 mm",
-    ] {
-        assert!(svg.contains(words), "{words}");
-    }
+    assert_says(
+        &svg,
+        &[
+            "100 mm",
+            "200 mm",
+            "thickness 2 mm",
+            "stress 7 to 70 MPa, R = 0.1",
+            "fixed x, y",
+            "diameter 10 mm",
+            "slot with tip 2",
+            "tips 0 and 1: 11.18 mm",
+        ],
+    );
     assert!(!svg.contains("NaN"));
 }
 

@@ -7,6 +7,7 @@ use tempfile::{TempDir, tempdir};
 
 use crate::interface::practice::copy;
 use crate::support::field::{command, is_near, predicted};
+use crate::support::rows::assert_says;
 use crate::support::shared::shared;
 
 /// A folder of the shared data in one of its own.
@@ -32,15 +33,16 @@ fn a_formula_of_residual_stress_has_the_units_of_its_key() {
     for set in ["", " --set material.poisson_ratio=0.3"] {
         let (code, said) = command(folder, &format!("predict us_residual.toml{set} --out none"));
         assert_eq!(code, 2, "{said}");
-        for word in [
-            "us_residual.toml:15",
-            "loading.residual_stress = ",
-            "specimen.width_in",
-            "residual_stress_ksi",
-            "residual_stress_mpa",
-        ] {
-            assert!(said.contains(word), "{word} in {said}");
-        }
+        assert_says(
+            &said,
+            &[
+                "us_residual.toml:15",
+                "loading.residual_stress = ",
+                "specimen.width_in",
+                "residual_stress_ksi",
+                "residual_stress_mpa",
+            ],
+        );
     }
     let rows: String =
         (-150..=150).map(|i| f64::from(i) / 100.0).map(|x| format!("{x},0,{}\n", -20.0 * (-x * x).exp())).collect();

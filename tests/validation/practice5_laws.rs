@@ -5,6 +5,7 @@ use std::fs;
 use serde::Deserialize;
 use serde_json::Value;
 
+use crate::support::desk::json;
 use crate::support::field;
 use crate::support::rows::{assert_says, rows};
 
@@ -32,9 +33,9 @@ fn laws_and_tables_of_practice_give_the_right_value_or_the_cause() {
             }
             let (code, said) = field::command(own.path(), command);
             assert_eq!(code, *exit, "{kind}: {command}: {said}");
-            assert_says(&said, words, &format!("{kind}: {command}"));
+            assert_says(&format!("{kind}: {command}: {said}"), words);
             for (file, place, right, slack) in figures {
-                let object: Value = serde_json::from_str(&fs::read_to_string(own.path().join(file)).unwrap()).unwrap();
+                let object = json(own.path().join(file));
                 let value = object.pointer(place).and_then(Value::as_f64).unwrap_or(f64::NAN);
                 println!("{kind}: {command}: {place} {value}, {right} is right within {slack}");
                 assert!((value / right - 1.0).abs() <= *slack, "{kind}: {command}: {place} {value}, {right} is right");

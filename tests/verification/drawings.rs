@@ -289,5 +289,5 @@ fn what_a_drawing_hides_or_repeats_is_refused() {
 
 fn refused(keys: &str, file: (&str, &str), words: &[impl AsRef<str>]) {
     let Err(error) = try_case(keys, &[file]) else { panic!("{keys} {}: taken, not refused", file.1) };
-    assert_says(&error.to_string(), words, keys);
+    assert_says(&format!("{keys}: {error}"), words);
 }

@@ -8,14 +8,9 @@ use serde_json::{Value, json};
 use tempfile::tempdir;
 
 use super::{FOR_PARAVIEW, QUICK, SLOW, of};
-use crate::interface::cli::{perilife, texts};
+use crate::interface::cli::perilife;
+use crate::support::desk::done;
 use crate::support::server::{Server, in_folder};
-
-fn run(folder: &Path, arguments: &[&str]) -> String {
-    let output = perilife(folder, arguments);
-    assert!(output.status.success(), "{}", texts(&output).1);
-    texts(&output).0
-}
 
 fn server(folder: &Path) -> Server {
     let place = in_folder(&folder.join("service"));
@@ -38,7 +33,7 @@ fn a_prediction_has_the_files_of_the_command() {
     for (name, text) in [("quick", &*(QUICK.to_owned() + FOR_PARAVIEW)), ("slow", SLOW)] {
         let job = service.submit("predictions", &of(name, text));
         fs::write(folder.join(format!("{name}.toml")), text).unwrap();
-        run(folder, &["predict", &format!("{name}.toml"), "--out", name]);
+        done(folder, &["predict", &format!("{name}.toml"), "--out", name]);
         let done = service.succeeded(&job);
         for file in fs::read_dir(folder.join(name)).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()) {
             match file.as_str() {
@@ -61,7 +56,7 @@ fn a_prediction_has_the_files_of_the_command() {
         let listed: Vec<&str> = done["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();
         // The mark of the command is no file of the service, which adds the report.
         assert_eq!(listed.len(), fs::read_dir(folder.join(name)).unwrap().count(), "{listed:?}");
-        run(folder, &["report", name, "--out", "report.html"]);
+        done(folder, &["report", name, "--out", "report.html"]);
         let plain =
             |text: Vec<u8>| String::from_utf8(text).unwrap().lines().filter(|line| !is_of_this_run(line)).collect::<String>();
         let [ours, theirs] = [service.file(&job, "report.html"), fs::read(folder.join("report.html")).unwrap()].map(plain);
@@ -86,7 +81,7 @@ fn is_of_this_run(line: &str) -> bool {
 /// `points` and `every_cycles` are those of `perilife export`.
 fn resampled_as_exported(folder: &Path, service: &Server, name: &str, job: &str) {
     for (query, option) in [("points=40", ["--points", "40"]), ("every_cycles=777.5", ["--every-cycles", "777.5"])] {
-        run(folder, &["export", name, "--out", "export.csv", option[0], option[1]]);
+        done(folder, &["export", name, "--out", "export.csv", option[0], option[1]]);
         assert_eq!(service.file(job, &format!("a_n.csv?{query}")), fs::read(folder.join("export.csv")).unwrap(), "{query}");
     }
     for (query, status) in [
@@ -169,8 +164,8 @@ const TEST: &str = "[measured]\nfiles = [\"curve.csv\"]\n[specimen]\nkind = \"mi
 /// Readings as the quick plate would give them.
 fn readings(folder: &Path) -> String {
     fs::write(folder.join("measured.toml"), QUICK).unwrap();
-    run(folder, &["predict", "measured.toml", "--out", "measured"]);
-    run(folder, &["export", "measured", "--out", "measured.csv", "--points", "30"]);
+    done(folder, &["predict", "measured.toml", "--out", "measured"]);
+    done(folder, &["export", "measured", "--out", "measured.csv", "--points", "30"]);
     let table = fs::read_to_string(folder.join("measured.csv")).unwrap();
     let rows = table.lines().skip(1).map(|line| line.split(',').take(2).collect::<Vec<_>>().join(",") + "\n");
     "cycles,crack_length_mm\n".to_owned() + &rows.collect::<String>()
@@ -187,7 +182,7 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
     for (name, method) in [("bonds", "spacing_mm = 1.5"), ("hand", "method = \"handbook\"")] {
         let text = model(method);
         fs::write(folder.join(format!("{name}.toml")), &text).unwrap();
-        run(folder, &["calibrate", &format!("{name}.toml"), "--out", name]);
+        done(folder, &["calibrate", &format!("{name}.toml"), "--out", name]);
         // As JSON with the files in it, and as a form that names no files.
         let job = service.submit("calibrations", &json!({ "name": name, "input": text, "files": { "curve.csv": curve } }));
         let done = service.succeeded(&job);
@@ -224,12 +219,12 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
             case.replace("a = 6450.0\np = 2.86\nhorizon_mm = 3.015\n", &format!("fitted = \"{name}/fitted.toml\"\n")),
         )
         .unwrap();
-        run(folder, &["predict", "case.toml", "--out", "case"]);
+        done(folder, &["predict", "case.toml", "--out", "case"]);
         assert_eq!(service.succeeded(&prediction)["calibration"], done["id"]);
         assert!(service.file(&prediction, "a_n.csv") == fs::read(folder.join("case/a_n.csv")).unwrap(), "{name}: with the fit");
 
         // What is left has the band of the table, and the interval comes from its low end, as on the command line.
-        let words = run(folder, &["predict", "case.toml", "--out", "case", "--inspect-from", "14", "--json"]);
+        let (words, _) = done(folder, &["predict", "case.toml", "--out", "case", "--inspect-from", "14", "--json"]);
         let asked = serde_json::from_str::<Value>(&words).unwrap()["inspection"].clone();
         let left = service.get(&format!("{prediction}/remaining?crack_length_mm=14")).expect(200).json();
         assert_eq!(left["has_band"], true, "{left}");
@@ -247,7 +242,7 @@ fn the_band_of_a_fit_is_about_its_curve() {
     let folder = dir.path();
     fs::write(folder.join("curve.csv"), readings(folder)).unwrap();
     fs::write(folder.join("hand.toml"), format!("{TEST}[model]\nmethod = \"handbook\"\n")).unwrap();
-    run(folder, &["calibrate", "hand.toml", "--out", "fit"]);
+    done(folder, &["calibrate", "hand.toml", "--out", "fit"]);
     let table = fs::read_to_string(folder.join("fit/fit_band.csv")).unwrap();
     let mut lines = table.lines();
     assert_eq!(lines.next(), Some("crack_length_mm,cycles_fitted,cycles_low,cycles_high"));
@@ -281,7 +276,8 @@ fn inputs_are_looked_at_as_by_the_command() {
     let folder = dir.path();
     let service = server(folder);
     fs::write(folder.join("case.toml"), QUICK).unwrap();
-    let theirs: Value = serde_json::from_str(&run(folder, &["check", "case.toml", "--json", "--picture", "case.svg"])).unwrap();
+    let theirs: Value =
+        serde_json::from_str(&done(folder, &["check", "case.toml", "--json", "--picture", "case.svg"]).0).unwrap();
     let mut ours = service.post("/v1/check", &json!({ "name": "case", "input": QUICK })).expect(200).json();
     assert_eq!(ours["drawing"].as_str().unwrap(), fs::read_to_string(folder.join("case.svg")).unwrap());
     ours.as_object_mut().unwrap().remove("drawing");
