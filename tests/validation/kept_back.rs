@@ -13,7 +13,7 @@ use perilife_calibration::search::FittedCurve;
 use perilife_measured::{Import, MeasuredCurve, read};
 
 use super::fit_engine;
-use super::fit_virkler::delta_k;
+use super::virkler::delta_k;
 use crate::support::median::pointwise_median;
 use crate::support::shared::shared;
 

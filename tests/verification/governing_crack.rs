@@ -1,12 +1,17 @@
-//! A row of a curve is of one crack: its rate is the slope of its length, and a plate with several cracks ends where one has the length asked for.
+//! Rows of a curve: of one crack, with the error that is stated, as long as a laboratory would find it.
 
 use perilife_base::units::MM;
-
+use perilife_growth::predict::error_estimate::error_estimate;
 use perilife_growth::predict::{GoverningCrack, Prediction, Silent, predict};
 use perilife_plate::specimen::Point;
-use perilife_study::cases::{NODES, case};
+use perilife_points::solver::SolverKind;
+use perilife_study::cases::{AUTO, NODES, POINTS, case};
+use perilife_study::references::{Reference, compare, largest};
 
-use crate::support::plates::cracked_plate;
+use crate::support::plates::{BOND_STRAIN, case as point_case, cracked_plate, pulled_plate};
+use crate::support::statics::loaded;
+
+// A row of a curve is of one crack: its rate is the slope of its length, and a plate with several cracks ends where one has the length asked for.
 
 /// A slant crack with two tips, two cracks of unlike length, and one from each edge: cracks, mm, and the length at which the run ends.
 const PLATES: [(&str, &[[Point; 2]], f64); 3] = [
@@ -55,4 +60,112 @@ fn the_length_to_stop_at_is_that_of_one_crack() {
     assert!(case(&text, &format!("{NODES} stop.crack_length_mm=11")).is_ok());
     let error = case(&text, &format!("{NODES} stop.crack_length_mm=10")).unwrap_err().to_string();
     assert!(error.contains("stop.crack_length_mm = 10") && error.contains("initial crack length 10 mm"), "{error}");
+}
+
+// The error that is stated with a life is above the one it has; `perilife verify estimates` has more plates and tolerances.
+
+#[test]
+fn a_life_is_within_the_error_that_is_stated() {
+    for (name, model) in [("slant_severance", AUTO), ("hole_attracts", AUTO), ("slant_severance", POINTS)] {
+        let reference = Reference::named(name).unwrap();
+        let case = reference.case(&[model.to_owned()]).unwrap();
+        let run = predict(&case, &Silent).unwrap();
+        let stated = error_estimate(&case, &run).unwrap();
+        let tips = compare(&run, reference.tips().unwrap(), f64::INFINITY);
+        let off = largest(tips.iter().flat_map(|tip| tip.cycles)).abs();
+        let path = tips.iter().map(|tip| tip.rms).fold(0.0, f64::max);
+        println!(
+            "{name} by {}: {off:.2} of {:.2} %, path {:.3} of {:.3} mm",
+            case.model.method(),
+            stated.life_percent,
+            1e3 * path,
+            1e3 * stated.path
+        );
+        assert!(off < stated.life_percent && path < stated.path, "{name}");
+        // A bound that is far above says nothing.
+        assert!(stated.life_percent < 3.0, "{name}: {stated:?}");
+    }
+}
+
+/// A ligament between holes is what coarse nodes are worst at: the life errs by 1.6 %, and more is stated than of other plates.
+#[test]
+fn a_coarse_run_states_a_large_error() {
+    let reference = Reference::named("double_edge_notched").unwrap();
+    let coarse = reference.case(&[AUTO.to_owned(), "model.tolerance_percent=5".to_owned()]).unwrap();
+    let run = predict(&coarse, &Silent).unwrap();
+    let stated = error_estimate(&coarse, &run).unwrap().life_percent;
+    let tips = compare(&run, reference.tips().unwrap(), f64::INFINITY);
+    let off = largest(tips.iter().flat_map(|tip| tip.cycles)).abs();
+    println!("{off:.2} of {stated:.2} %");
+    assert!(off > 1.0 && off < stated && stated < 4.0, "{off} of {stated}");
+}
+
+/// Bonds that fail by their own strain have no error that a finer lattice would tell.
+#[test]
+fn nothing_is_stated_of_bonds() {
+    let case = Reference::named("slant_severance")
+        .unwrap()
+        .case(&["fatigue.driver=bond_strain".to_owned(), "stop.cycles_max=1".to_owned()]);
+    let case = case.unwrap();
+    let run = predict(&case, &Silent).unwrap();
+    assert!(error_estimate(&case, &run).unwrap_err().contains("own strain"));
+}
+
+/// A crack that passes a hole at 0.03 mm hardly grows behind its rim: finite elements with steps of 0.004 mm give 1.04 million cycles, nodes 0.81 to 0.96
+/// by how fine they are. The gap is less than what the path is known to.
+#[test]
+#[ignore = "long: ten seconds"]
+fn nothing_is_stated_of_a_crack_that_grazes_a_hole() {
+    let text = pulled_plate(
+        "width_mm = 80\nlength_mm = 160\n\
+         holes = [{ x_mm = 0, y_mm = 0, diameter_mm = 14 }, { x_mm = -24, y_mm = 2, diameter_mm = 10 }, { x_mm = 24, y_mm = 5, diameter_mm = 8 }]\n\
+         cracks = [{ from_mm = [7, 0], to_mm = [10, 0] }]",
+    );
+    let case = case(&text, &format!("loading.stress_max_mpa=60 stop.crack_length_mm=22 {AUTO}")).unwrap();
+    let run = predict(&case, &Silent).unwrap();
+    let why = error_estimate(&case, &run).unwrap_err();
+    println!("{why}");
+    assert!(why.contains("passes an edge"), "{why}");
+}
+
+// The crack length of a crack that bonds grew is the one a laboratory would find from the compliance of the same body.
+
+fn panel(length: f64) -> String {
+    format!("kind=\"middle_tension\"\nwidth_mm=90\nlength_mm=120\nthickness_mm=2\ncrack_length_mm={length}\n")
+}
+
+/// Compliance of the body with a straight cut of each length is inverted at the compliance of the grown crack.
+fn compared(runs: &[(&str, &[&str])]) {
+    let cut: Vec<(f64, f64)> = (18..=32)
+        .map(|a| {
+            let case = point_case(&panel(f64::from(a)), &[BOND_STRAIN, "model.spacing_mm=1"]);
+            (f64::from(a) * MM, loaded(&case, SolverKind::Multigrid).unwrap().work)
+        })
+        .collect();
+    for (name, set) in runs {
+        let all = [&[BOND_STRAIN, "model.spacing_mm=1", "stop.crack_length_mm=30"], *set].concat();
+        let run = predict(&point_case(&panel(20.0), &all), &Silent).unwrap();
+        let by_compliance = |work: f64| {
+            let pair = cut.windows(2).find(|pair| pair[1].1 >= work).unwrap();
+            pair[0].0 + (work - pair[0].1) / (pair[1].1 - pair[0].1) * (pair[1].0 - pair[0].0)
+        };
+        for target in [20.0, 20.5, 21.0, 22.0, 24.0, 26.0, 28.0, 29.5] {
+            let point = run.curve.iter().find(|point| point.crack_length >= target * MM).unwrap();
+            let found = by_compliance(point.work);
+            println!("{name}: {:.3} mm, by compliance {:.3} mm", point.crack_length / MM, found / MM);
+            // A tenth of the spacing of 1 mm; reached are 0.04, and 0.08 while the front of a clean cut takes its shape.
+            assert!((point.crack_length - found).abs() < 0.1 * MM, "{name}: {} and {}", point.crack_length / MM, found / MM);
+        }
+    }
+}
+
+#[test]
+fn a_grown_crack_is_as_long_as_its_compliance_says() {
+    compared(&[("clean cut", &[])]);
+}
+
+#[test]
+#[ignore = "long: ten seconds"]
+fn a_crack_grown_by_other_exponents_is_as_long_as_its_compliance_says() {
+    compared(&[("p = 2", &["fatigue.p=2", "stop.cycles_max=1e12"]), ("p = 4", &["fatigue.p=4", "stop.cycles_max=1e12"])]);
 }
