@@ -31,4 +31,5 @@ mod support {
     pub mod slurm;
     pub mod statics;
     pub mod workbook;
+    pub mod written;
 }

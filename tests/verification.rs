@@ -40,6 +40,6 @@ mod symmetry;
 mod calibrations;
 mod topics;
 mod near_tip_fields;
-mod growth_data;
+mod rate_constant;
 mod contact;
-mod governing_crack;
+mod crack_length;

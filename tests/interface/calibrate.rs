@@ -9,6 +9,7 @@ use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::daily::panel_without_law;
 use crate::support::desk::{done, json};
 use crate::support::rows::assert_says;
 
@@ -17,23 +18,13 @@ const COARSE: [&str; 6] =
     ["--set", "model.spacing_mm=3", "--set", "specimen.crack_length_mm=18", "--set", "measured.from_crack_length_mm=18"];
 
 /// The same panel from 20 to 40 mm, which the fit covers.
-const PANEL: &str = r#"
-[specimen]
-kind = "middle_tension"
-width_mm = 152.4
-length_mm = 300.0
-thickness_mm = 2.54
-crack_length_mm = 20.0
-[material]
-name = "al2024-t3"
-[loading]
-stress_range_mpa = 48.28
-stress_ratio = 0.2
-[model]
-spacing_mm = 3.0
-[stop]
+fn panel() -> String {
+    let plate = panel_without_law().replace("crack_length_mm = 9.0", "crack_length_mm = 20.0");
+    plate.replace("method = \"handbook\"", "spacing_mm = 3.0")
+        + "[stop]
 crack_length_mm = 40.0
-"#;
+"
+}
 
 /// A copy of the committed calibration, its measured table and a case to predict.
 fn copy_of_the_calibration() -> TempDir {
@@ -43,7 +34,7 @@ fn copy_of_the_calibration() -> TempDir {
     for file in ["case.toml", "measured/virkler_median.csv"] {
         fs::copy(from.join(file), dir.path().join(file)).unwrap();
     }
-    fs::write(dir.path().join("panel.toml"), PANEL).unwrap();
+    fs::write(dir.path().join("panel.toml"), panel()).unwrap();
     dir
 }
 
@@ -75,7 +66,7 @@ fn a_calibration_with_a_prediction_and_its_export() {
     }
     assert!((1.5..8.0).contains(&record.p) && (1.0..5.0).contains(&record.paris_m), "{record:?}");
     assert!(report["rms_life_error"].as_f64().unwrap() < 0.2, "{report}");
-    let with_record = format!("{PANEL}[fatigue]\nfitted = \"out/fit/fitted.toml\"\n");
+    let with_record = panel() + "[fatigue]\nfitted = \"out/fit/fitted.toml\"\n";
     fs::write(dir.path().join("again.toml"), with_record).unwrap();
     done(dir.path(), &["check", "again.toml"]);
 
@@ -115,7 +106,7 @@ fn a_calibration_with_a_prediction_and_its_export() {
 #[test]
 fn a_slip_in_a_case_to_predict_costs_no_calibration() {
     let dir = copy_of_the_calibration();
-    fs::write(dir.path().join("slip.toml"), PANEL.replace("width_mm", "widht_mm")).unwrap();
+    fs::write(dir.path().join("slip.toml"), panel().replace("width_mm", "widht_mm")).unwrap();
     let arguments = ["calibrate", "case.toml", "--out", "out", "--predict", "panel.toml", "slip.toml"];
     assert_refused(&perilife(dir.path(), &arguments), 2, &["slip.toml:4", "specimen.widht_mm"]);
     let arguments = ["calibrate", "case.toml", "--out", "out", "--predict", "panel.toml", "panel.toml"];
@@ -141,7 +132,6 @@ fn rates_of_the_committed_table() {
     assert!((2.6..3.2).contains(&m), "{m}");
 }
 
-/// The example with three stress ratios in one table, whose readings were made of a law: it is found within three of its errors.
 #[test]
 fn the_law_behind_three_stress_ratios_is_found() {
     let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration/compact-three-ratios/case.toml");

@@ -108,7 +108,6 @@ fn how_lives_end() {
     }
 }
 
-/// `check` says it before any run.
 #[test]
 fn check_says_that_the_first_load_breaks_the_plate() {
     let dir = tempdir().unwrap();

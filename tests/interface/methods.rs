@@ -8,6 +8,7 @@ use serde_json::Value;
 use tempfile::tempdir;
 
 use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
+use crate::support::daily::PANEL;
 use crate::support::desk::{desk, done, json};
 
 // `fatigue.driver = "tip_field"` as a user calls it: chosen by C and m, its files, its refusals.
@@ -291,28 +292,14 @@ fn a_plate_without_cracks_has_the_stress_of_its_holes() {
 
 // `model.method = "handbook"` as a user calls it, and the residual-strength curve of either method.
 
-const PANEL: &str = r#"
-[specimen]
-kind = "middle_tension"
-width_mm = 152.4
-length_mm = 300.0
-thickness_mm = 2.54
-crack_length_mm = 9.0
-[material]
-name = "al2024-t3"
-[loading]
-stress_range_mpa = 48.28
-stress_ratio = 0.2
-[model]
-method = "handbook"
-[fatigue]
-paris_c_mm_per_cycle = 8.95422e-8
-paris_m = 2.874
-"#;
+/// The panel of every day, until it breaks, by a law that holds everywhere.
+fn panel() -> String {
+    PANEL.replace("allow_extrapolation = true\n[stop]\ncrack_length_mm = 49.8\n", "")
+}
 
 #[test]
 fn a_hand_calculation_leaves_the_files_of_a_run() {
-    let dir = desk(&[("panel.toml", &PANEL)]);
+    let dir = desk(&[("panel.toml", &panel())]);
     let arguments = ["predict", "panel.toml", "--out", "run", "--residual-strength", "--json", "-v"];
     let (stdout, stderr) = done(dir.path(), &arguments);
     // Yield strength of the material file: 345 MPa.
@@ -354,7 +341,7 @@ fn a_hand_calculation_leaves_the_files_of_a_run() {
 #[test]
 fn a_plate_is_refused_with_the_remedy() {
     let dir = tempdir().unwrap();
-    let plate = PANEL
+    let plate = panel()
         .replace("middle_tension", "plate")
         .replace("crack_length_mm = 9.0", "cracks = [{ from_mm = [-9, 0], to_mm = [9, 0] }]");
     fs::write(dir.path().join("plate.toml"), plate).unwrap();
@@ -403,7 +390,7 @@ fn the_engine_writes_plastic_zone_and_residual_strength_too() {
 /// What the program chooses, how wrong the life may be, and what the other engine says of it.
 #[test]
 fn a_life_comes_with_its_error_and_a_second_opinion() {
-    let dir = desk(&[("panel.toml", &PANEL.replace("method = \"handbook\"", ""))]);
+    let dir = desk(&[("panel.toml", &panel().replace("method = \"handbook\"", ""))]);
     let (stdout, _) = done(dir.path(), &["predict", "panel.toml", "--out", "run", "--cross-check"]);
     for words in
         ["handbook K (Feddersen secant)", "numerical error ≤ 0.9 % of life (estimate)", "Cross-check    element_free_galerkin"]

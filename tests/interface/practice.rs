@@ -126,7 +126,6 @@ fn tables_of_practice_give_the_right_figure_or_the_cause() {
     }
 }
 
-/// The constants of all readings lie within those that the specimens have by themselves.
 #[test]
 fn constants_of_all_lie_within_those_of_the_specimens() {
     let Some(readme) = shared("field/practice4/README.md") else { return };

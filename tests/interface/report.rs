@@ -7,23 +7,9 @@ use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::daily::panel_without_law;
 use crate::support::desk::{desk, done, json};
 
-const PANEL: &str = r#"
-[specimen]
-kind = "middle_tension"
-width_mm = 152.4
-length_mm = 300.0
-thickness_mm = 2.54
-crack_length_mm = 9.0
-[material]
-name = "al2024-t3"
-[loading]
-stress_range_mpa = 48.28
-stress_ratio = 0.2
-[model]
-method = "handbook"
-"#;
 const LAW: &str = "[fatigue]\nparis_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874\n";
 const MEASURED: &str = "[measured]\nfiles = [\"n.csv\"]\nfrom_crack_length_mm = 9.0\n\
     leave_out = [{ specimen = \"P1\", from_cycles = 0, to_cycles = 9000, reason = \"load of the <precrack>\" }]\n";
@@ -53,9 +39,9 @@ fn readings() -> String {
 /// `run` and `fit` beside the inputs that they were made from.
 fn folders() -> TempDir {
     let dir = desk(&[
-        ("panel.toml", &format!("{PANEL}{LAW}[stop]\ncrack_length_mm = 40.0\n")),
+        ("panel.toml", &format!("{}{LAW}[stop]\ncrack_length_mm = 40.0\n", panel_without_law())),
         ("n.csv", &readings()),
-        ("fit.toml", &format!("{MEASURED}{PANEL}")),
+        ("fit.toml", &format!("{MEASURED}{}", panel_without_law())),
     ]);
     for call in [["predict", "panel.toml", "--out", "run"], ["calibrate", "fit.toml", "--out", "fit"]] {
         done(dir.path(), &call);

@@ -101,7 +101,6 @@ fn check_and_predict_say_what_the_spectrum_is() {
     assert!(lives[1].0 > 1.1 * lives[0].0, "{lives:?}");
 }
 
-/// A spectrum of one size is constant amplitude, in every method.
 #[test]
 fn a_spectrum_of_equal_cycles_is_constant_amplitude() {
     let constant = CASE.replace(

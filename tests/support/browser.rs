@@ -182,7 +182,6 @@ impl Browser {
         cdp("Emulation.setEmulatedMedia", preferred);
     }
 
-    /// Puts what is downloaded into a folder.
     pub fn download_into(&self, folder: &Path) {
         let params = json!({ "behavior": "allow", "downloadPath": folder });
         self.command("goog/cdp/execute", &json!({ "cmd": "Browser.setDownloadBehavior", "params": params }));

@@ -29,6 +29,11 @@ allow_extrapolation = true
 crack_length_mm = 49.8
 "#;
 
+/// Its plate, load and method, without law and end.
+pub fn panel_without_law() -> &'static str {
+    PANEL.split_once("[fatigue]").unwrap().0
+}
+
 /// A plate that is pulled once.
 pub const SCENE: &str = r#"
 [specimen]
@@ -52,7 +57,6 @@ edges = ["top", "bottom"]
 pub const READINGS: &str = "specimen,cycles,crack_length_mm\nA,0,9\nA,20000,9.6\nA,40000,10.3\nA,60000,11.2\nA,80000,12.3\nA,100000,13.6\n\
                             A,120000,15.3\nA,140000,17.6\n";
 
-/// A sweep of the panel.
 pub const SWEEP: &str =
     "case = \"panel.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"specimen.crack_length_mm\"\nvalues = [9.0, 10.0]\n";
 
@@ -67,13 +71,12 @@ pub const KINDS: [(&[&str], &str); 5] = [
 
 /// Writes the inputs of all kinds.
 pub fn write_inputs(folder: &Path) {
-    let (plate, _) = PANEL.split_once("[fatigue]").unwrap();
     let files = [
         ("panel.toml", PANEL.to_owned()),
         ("small.toml", SMALL_CASE.to_owned()),
         ("scene.toml", SCENE.to_owned()),
         ("readings.csv", READINGS.to_owned()),
-        ("fit.toml", format!("[measured]\nfiles = [\"readings.csv\"]\n{plate}")),
+        ("fit.toml", format!("[measured]\nfiles = [\"readings.csv\"]\n{}", panel_without_law())),
         ("sweep.toml", SWEEP.to_owned()),
     ];
     files.iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());

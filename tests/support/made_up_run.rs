@@ -64,15 +64,7 @@ fn curve() -> Vec<CurvePoint> {
             cycles += 0.2e-3 / growth_rate;
         }
         let y = y0 + 1.2e-3 * (1.0 - (-growth / 2e-3).exp());
-        let tip = |sign: f64| TipRecord {
-            state: perilife_points::crack_tip::TipState::Active,
-            position: [sign * (x0 + growth), sign * y],
-            growth,
-            factors: None,
-            t_stress: None,
-            response: Response::PROPORTIONAL,
-            growth_rate: None,
-        };
+        let at = |sign: f64| tip([sign * (x0 + growth), sign * y], growth);
         curve.push(CurvePoint {
             is_solved: true,
             cycles,
@@ -82,7 +74,7 @@ fn curve() -> Vec<CurvePoint> {
             work: 1.0 + crack_length,
             limit_load: None,
             broken_bonds: 9 * step,
-            tips: vec![tip(-1.0), tip(1.0)],
+            tips: vec![at(-1.0), at(1.0)],
             depth: None,
             response: Response::PROPORTIONAL,
         });
@@ -144,4 +136,17 @@ pub fn judged(case: &Case, run: &Prediction) -> Judged {
 /// `result.json` of a run.
 pub fn result(case: &Case, run: &Prediction) -> serde_json::Value {
     serde_json::to_value(judged(case, run).record).unwrap()
+}
+
+/// A tip at a place that has grown so far, whose K nobody read.
+pub fn tip(position: Point, growth: f64) -> TipRecord {
+    TipRecord {
+        state: perilife_points::crack_tip::TipState::Active,
+        position,
+        growth,
+        factors: None,
+        t_stress: None,
+        response: Response::PROPORTIONAL,
+        growth_rate: None,
+    }
 }

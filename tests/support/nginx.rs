@@ -10,7 +10,6 @@ use tempfile::TempDir;
 
 const PROGRAM: &str = "/usr/sbin/nginx";
 const PATIENCE: Duration = Duration::from_secs(20);
-/// As it is delivered.
 pub const DELIVERED: &str = include_str!("../../data/deploy/nginx.conf");
 
 /// A proxy, stopped and removed when dropped.

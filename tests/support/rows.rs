@@ -18,3 +18,9 @@ pub fn rows<T: DeserializeOwned>(file: &str, table: &str) -> T {
 pub fn assert_says(message: &str, words: &[impl AsRef<str>]) {
     words.iter().for_each(|words| assert!(message.contains(words.as_ref()), "{} in {message}", words.as_ref()));
 }
+
+/// A refusal in these words.
+#[track_caller]
+pub fn assert_refusal<T, E: ToString>(result: Result<T, E>, words: &[impl AsRef<str>]) {
+    assert_says(&result.err().expect("it is taken").to_string(), words);
+}

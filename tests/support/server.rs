@@ -144,12 +144,10 @@ impl Server {
         ended
     }
 
-    /// A file of a job.
     pub fn file(&self, job: &str, name: &str) -> Vec<u8> {
         self.file_of(&format!("{job}/files/{name}"))
     }
 
-    /// A file at an address.
     pub fn file_of(&self, path: &str) -> Vec<u8> {
         self.get(path).expect(200).body
     }

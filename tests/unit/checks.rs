@@ -118,6 +118,9 @@ fn extrapolation_has_two_sides() {
     assert_eq!((below.verdict, below.side), (Verdict::Caution, Some(Side::Conservative)));
     assert_eq!((above.verdict, above.side), (Verdict::Failed, Some(Side::NonConservative)));
     assert!((below.effect_percent.unwrap() - 20.0).abs() < 0.1 && (above.effect_percent.unwrap() - 30.0).abs() < 0.1);
+    assert_eq!(below.words, "Extrapolation: 20.0 % of life at ΔK below 12.00 MPa√m, the lowest tested (usually conservative)");
+    assert!(below.remedy.unwrap().contains("threshold_mpa"));
+    assert!(above.words.contains("30.0 % of life at ΔK above 17.00 MPa√m"));
     assert_eq!(validity(&of_run(&case, &run)), Validity::NotValid);
     assert_eq!(of_run(&case, &run)[0].name, "extrapolation_above", "what fails comes first");
     assert_eq!(refusal(&case, &run).unwrap().exit_code(), 2);
@@ -127,6 +130,12 @@ fn extrapolation_has_two_sides() {
     case.law = made_up_case::fitted(21.0, 30.0);
     assert_eq!(named(&case, &run, "extrapolation_below").verdict, Verdict::Caution);
     assert!(refusal(&case, &run).is_none());
+    // A threshold is remedy enough, and the tested specimen itself is within the range.
+    case.law = made_up_case::fitted(12.0, 17.0);
+    case.fatigue.threshold = 3e6;
+    assert!(!named(&case, &run, "extrapolation_below").remedy.unwrap().contains("threshold_mpa"));
+    case.law = made_up_case::fitted(10.0, 20.0);
+    assert_eq!(named(&case, &run, "extrapolation_below").verdict, Verdict::Passed);
 }
 
 #[test]
@@ -215,27 +224,6 @@ fn limits_name_the_governing_crack() {
     assert!(named(&case, &run, "small_scale_yielding").words.contains("not valid from a = 43 mm ("));
     // Twins share their sum evenly.
     assert!((check - 24.5e-3).abs() < 1e-3, "{check}");
-}
-
-#[test]
-fn life_outside_the_tested_range_is_a_check_a_side_with_a_remedy() {
-    let (mut case, mut run) = (made_up_case::case(), made_up_run::prediction(0.0));
-    // ΔK rises linearly from 10 to 20 MPa√m over 100 cycles.
-    run.curve.truncate(2);
-    for (point, (cycles, delta_k)) in run.curve.iter_mut().zip([(0.0, 10e6), (100.0, 20e6)]) {
-        (point.cycles, point.delta_k) = (cycles, delta_k);
-    }
-    case.law = made_up_case::fitted(12.0, 17.0);
-    let found = |case: &Case, name: &str| of_run(case, &run).into_iter().find(|check| check.name == name).unwrap();
-    let below = found(&case, "extrapolation_below");
-    assert_eq!(below.words, "Extrapolation: 20.0 % of life at ΔK below 12.00 MPa√m, the lowest tested (usually conservative)");
-    assert!(below.remedy.unwrap().contains("threshold_mpa"));
-    assert!(found(&case, "extrapolation_above").words.contains("30.0 % of life at ΔK above 17.00 MPa√m"));
-    case.fatigue.threshold = 3e6;
-    assert!(!found(&case, "extrapolation_below").remedy.unwrap().contains("threshold_mpa"));
-    // The tested specimen itself is within the range.
-    case.law = made_up_case::fitted(10.0, 20.0);
-    assert_eq!(found(&case, "extrapolation_below").verdict, Verdict::Passed);
 }
 
 #[test]

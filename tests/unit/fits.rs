@@ -212,7 +212,6 @@ fn a_narrow_window_takes_p_from_a_record_or_says_that_it_is_not_identified() {
     assert_eq!(nowhere.exit_code(), 4);
 }
 
-/// p of peridynamic records is p, not m.
 #[test]
 fn bonds_take_p_and_hand_calculation_m_of_a_record() {
     use perilife_calibration::exponent::Exponent;

@@ -294,7 +294,6 @@ fn many_files_by_chance_are_read_or_refused() {
     assert!(read > 2500);
 }
 
-/// A million readings in less than two seconds, from bytes to checked readings.
 #[test]
 #[ignore = "long: measures time on an idle machine"]
 fn a_million_readings_are_read_in_two_seconds() {

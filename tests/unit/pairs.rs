@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use perilife_base::input::{Document, Folder};
+use perilife_base::table::Decimal;
 use perilife_base::table::names::{Column, Kind, Named, Role};
 use perilife_base::table::units::LengthUnit;
-use perilife_base::table::{Decimal, units::LengthUnit};
 use perilife_base::units::MM;
 use perilife_calibration::calibrate::calibrate;
 use perilife_calibration::case::CalibrationCase;
@@ -14,6 +14,7 @@ use perilife_calibration::fit::Fit;
 use perilife_growth::predict::Silent;
 use perilife_measured::{Import, Measured, parse, read};
 
+use crate::support::rows::assert_refusal;
 use crate::support::shared::shared;
 
 // Tables of pairs of columns, headers of two lines, and text behind the readings.
@@ -75,8 +76,7 @@ fn pairs_that_are_none_are_refused() {
         (header("N1,a1 (mm),N2,a2 (mm)").replace("40000,14.20", "4000,14.20"), "is below the previous reading (31000)"),
     ];
     for (text, words) in cases {
-        let error = read_of_pairs(&text, &Import::default()).unwrap_err();
-        assert!(error.to_string().contains(words), "{words} in {error}");
+        assert_refusal(read_of_pairs(&text, &Import::default()), &[words]);
     }
 }
 
@@ -104,8 +104,7 @@ fn text_behind_the_readings_is_told_and_not_read() {
     }
     // A bad number among the readings stays an error, and so does one beside a good one in the last row.
     for bad in [rows.replace("35000,", "many,"), format!("{rows}70000,long\n")] {
-        let error = read_of_pairs(&format!("cycles,crack_length_mm\n{bad}"), &Import::default()).unwrap_err();
-        assert!(error.to_string().contains("is not a number"), "{error}");
+        assert_refusal(read_of_pairs(&format!("cycles,crack_length_mm\n{bad}"), &Import::default()), &["is not a number"]);
     }
 }
 

@@ -13,6 +13,7 @@ use perilife_plate::loading::{LOWER_LOADS_MOST, Loading};
 use perilife_points::crack_tip::TipState;
 
 use crate::support::hand_cases::{PANEL, hand_case};
+use crate::support::made_up_run::tip;
 
 // Rows of a run: mechanics that fail in mid-run keep those so far, and none tells a K that was not read for it.
 
@@ -31,15 +32,7 @@ impl Steady {
             work: f64::NAN,
             limit_load: None,
             broken_bonds: 0,
-            tips: vec![TipRecord {
-                state: TipState::Active,
-                position: [growth, 0.0],
-                growth,
-                factors: None,
-                t_stress: None,
-                response: Response::PROPORTIONAL,
-                growth_rate: None,
-            }],
+            tips: vec![tip([growth, 0.0], growth)],
             depth: None,
             response: Response::PROPORTIONAL,
         });
@@ -128,21 +121,9 @@ fn now(cycles: f64, crack_length: f64, tips: &[TipRecord]) -> GrowthStatus<'_> {
     GrowthStatus { cycles, crack_length, delta_k: 1.0, response: Response::PROPORTIONAL, limit_load: None, tips }
 }
 
-fn tip(growth: f64) -> TipRecord {
-    TipRecord {
-        state: perilife_points::crack_tip::TipState::Active,
-        position: [growth, 0.0],
-        growth,
-        factors: None,
-        t_stress: None,
-        response: Response::PROPORTIONAL,
-        growth_rate: None,
-    }
-}
-
 #[test]
 fn what_is_no_number_ends_a_run_in_an_error() {
-    let tips = [tip(1e-3)];
+    let tips = [tip([1e-3, 0.0], 1e-3)];
     for (before, cycles, crack_length, says) in [
         (0.0, f64::NAN, 0.01, "the cycles after a block came out as NaN"),
         (0.0, f64::INFINITY, 0.01, "the cycles after a block came out as inf"),
@@ -162,10 +143,11 @@ fn a_run_whose_tips_stand_still_ends() {
     let mut guard = Guard::default();
     // Growth before N = 0 is negative.
     for i in 0..BLOCKS_WITHOUT_GROWTH {
-        let tips = [tip(-1e-3 + 1e-9 * i as f64), tip(0.0)];
+        let growth = -1e-3 + 1e-9 * i as f64;
+        let tips = [tip([growth, 0.0], growth), tip([0.0; 2], 0.0)];
         assert_eq!(guard.check(0.0, &now(0.0, 0.01, &tips)).unwrap(), None, "block {i} grew");
     }
-    let still = [tip(-2e-3), tip(0.0)];
+    let still = [tip([-2e-3, 0.0], -2e-3), tip([0.0; 2], 0.0)];
     for i in 1..BLOCKS_WITHOUT_GROWTH {
         assert_eq!(guard.check(0.0, &now(0.0, 0.01, &still)).unwrap(), None, "{i} blocks without growth");
     }

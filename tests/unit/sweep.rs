@@ -155,7 +155,6 @@ fn the_shipped_sweep_is_right() {
     assert_eq!(sweep.cases().unwrap().len(), 200);
 }
 
-/// The record that is shipped.
 fn record() -> FittedRecord {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration/al2024-t3");
     fitted_record("fitted.toml", &Folder::from(folder.as_path())).unwrap()

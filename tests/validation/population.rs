@@ -132,7 +132,6 @@ impl Score {
         self.inside / self.count
     }
 
-    /// Percent.
     fn percent(&self) -> f64 {
         100.0 * self.crps / self.count
     }

@@ -58,7 +58,7 @@ fn the_median_at_every_reading_is_the_shared_one() {
 // Growth rates of the Virkler panels against figures that another program computed from the same readings.
 
 /// ΔK of the panel: secant width correction, stress range 48.28 MPa, width 152.4 mm.
-fn delta_k(a: f64) -> f64 {
+pub fn delta_k(a: f64) -> f64 {
     let pi = std::f64::consts::PI;
     48.28 * MPA * (pi * a / (pi * a / (152.4 * MM)).cos()).sqrt()
 }
@@ -126,11 +126,6 @@ fn paris_lines_of_every_specimen_match_the_reference() {
 
 // The calibration on real curves, with hand calculation (Paris growth, handbook K) in the place of the peridynamic model: what the search, the specimens and the confidence do on real scatter, in a second.
 
-pub fn delta_k_of_fit(a: f64) -> f64 {
-    let pi = std::f64::consts::PI;
-    48.28 * MPA * (pi * a / (pi * a / (152.4 * MM)).cos()).sqrt()
-}
-
 fn fit_to(file: &str, criterion: Criterion) -> Option<Fit> {
     let measured = read(&[shared(file)?], &Import::default()).unwrap();
     measured.check_lengths(76.2 * MM, "half width").unwrap();
@@ -165,12 +160,6 @@ fn every_specimen_gets_the_constants_of_an_independent_fit() {
         assert_eq!(row["specimen"], specimen.name);
         let number = |column: &str| row[column].parse::<f64>().unwrap();
         let (m, rms) = (number("m_integrated"), number("rms_rel_integrated"));
-        println!(
-            "{}: p {:.4} against {m}, rms {:.5} against {rms}",
-            specimen.name,
-            specimen.constants.p,
-            specimen.rms_life_error()
-        );
         assert!((specimen.constants.p - m).abs() < 0.02, "{}: p {} against {m}", specimen.name, specimen.constants.p);
         assert!(
             (specimen.rms_life_error() - rms).abs() < 1e-3,
@@ -200,13 +189,6 @@ fn the_median_panel_is_fitted_within_two_percent_of_life() {
     let calibration = calibration(&[]);
     let found = fit_to_of_fit_engine(&calibration, &calibration.curves);
     let life = found.record.life_fitted() / found.record.life_measured();
-    println!(
-        "p {:.4} ± {:.4}, rms {:.4}, life {life:.4}, m {:.4}",
-        found.record.constants.p,
-        found.p_error(),
-        found.record.rms_life_error(),
-        found.paris.m
-    );
     assert!(found.record.rms_life_error() <= 0.02);
     assert!((life - 1.0).abs() <= 0.025);
     assert!((2.7..=3.3).contains(&found.paris.m));

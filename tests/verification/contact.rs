@@ -293,11 +293,6 @@ fn a_closed_crack_ahead_stands_still() {
     let run = predict(&case, &Silent).unwrap();
     // Until a tip of the open crack has left the plate.
     let through = run.curve.iter().find(|point| point.tips.iter().any(|tip| tip.state == TipState::LeftPlate)).unwrap();
-    println!(
-        "{} cycles, closed tips grew {:?}",
-        through.cycles,
-        through.tips[2..].iter().map(|tip| tip.growth).collect::<Vec<_>>()
-    );
     assert!(through.tips[2..].iter().all(|tip| tip.growth < 0.01e-3), "{:?}", through.tips);
     assert!((through.cycles / 86e3 - 1.0).abs() < 0.01, "{}", through.cycles);
 }

@@ -164,7 +164,6 @@ fn a_drawn_fillet_concentrates_stress_as_in_the_charts() {
     assert!((factor / chart - 1.0).abs() < 0.02, "{factor} for {chart}");
 }
 
-/// Every refusal with its layer and place.
 #[test]
 fn what_is_no_plate_is_refused_by_layer_and_place() {
     for (unit, entities, words) in rows::<Vec<(u8, Vec<String>, Vec<String>)>>("drawings", "no_plate") {

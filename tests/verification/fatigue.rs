@@ -113,13 +113,6 @@ fn every_scene_ends_with_a_named_stop_and_an_orderly_curve() {
     ] {
         let run = grow(specimen, &set);
         let figures = &run.figures;
-        println!(
-            "{name}: {} at {:.4e} cycles, {:.2} mm, {} blocks",
-            run.stop,
-            run.life_cycles(),
-            run.crack_length_final() / MM,
-            figures.blocks
-        );
         assert!(ends.contains(&run.stop), "{name} ended as {}", run.stop);
         let first = &run.curve[0];
         assert_eq!(first.cycles, 0.0, "{name}");

@@ -67,14 +67,6 @@ fn a_scene_taken_up_is_the_undisturbed_one() {
         let whole = perilife_scenes::run(&scene, &keeping).unwrap();
         let kept = keeping.kept();
         let (last, size) = (*whole.history.last().unwrap(), kept.last().map_or(0, Vec::len) / 1000);
-        println!(
-            "{name}: {}, {} rows, {} broken bonds, {} checkpoints of {size} kB, {:.2} s",
-            whole.end,
-            whole.history.len(),
-            last.broken_bonds,
-            kept.len(),
-            whole.figures.wall_s
-        );
         assert!(kept.len() >= 3 && last.broken_bonds > 0, "{name}: nothing to take up, so this scene tests nothing");
         // One that keeps nothing goes the same way.
         if number % 3 == 0 {

@@ -17,7 +17,6 @@ fn with_tokens<const N: usize>(place: &[&str], more: &[&str], names: [(&str, &st
     (Server::start(place, &[&["--require-token"], more].concat()), tokens)
 }
 
-/// Bodies that trickle in keep nobody else waiting.
 #[test]
 fn slow_bodies_of_one_keep_nobody_waiting() {
     let dir = tempdir().unwrap();

@@ -184,7 +184,6 @@ fn two_thousand_jobs_over_dying_workers() {
     println!("{count} jobs over {kills} kills in {:.0} s", begun.elapsed().as_secs_f64());
 }
 
-/// Runs of a batch.
 const BATCH: usize = 12;
 
 /// Time of a batch of jobs by so many workers of one thread each, in processes of their own.

@@ -8,7 +8,6 @@ use serde_json::{Value, json};
 use tempfile::tempdir;
 
 use super::{FOR_PARAVIEW, QUICK, SLOW, of};
-use crate::interface::cli::perilife;
 use crate::support::desk::done;
 use crate::support::server::{Server, in_folder};
 

@@ -16,6 +16,8 @@ use perilife_plate::material::growth_data::{record, records};
 use perilife_points::bond_law::Kernel;
 use perilife_points::spacing::HORIZON_RATIO;
 
+use crate::support::rows::assert_refusal;
+
 // Growth data of the library against values computed from the published constants by themselves.
 
 /// Thickness of the check values, 0.1 in.
@@ -92,8 +94,7 @@ fn a_case_takes_the_law_of_its_material() {
         ("growth_law = \"library\"\nparis_m = 3.0", "conflicts with growth_law"),
         ("growth_law = \"library\"\nfitted = \"fitted.toml\"", "conflicts with"),
     ] {
-        let error = case(fatigue).unwrap_err().to_string();
-        assert!(error.contains(problem), "{error}");
+        assert_refusal(case(fatigue), &[problem]);
     }
     let of = |name: &str| {
         let text = format!("{PANEL}growth_law = \"library\"").replace("\"al2024-t3-clad-lt\"", name);

@@ -9,6 +9,7 @@ use perilife_study::cases::{AUTO, NODES, POINTS, case};
 use perilife_study::references::{Reference, compare, largest};
 
 use crate::support::plates::{BOND_STRAIN, case as point_case, cracked_plate, pulled_plate};
+use crate::support::rows::assert_refusal;
 use crate::support::statics::loaded;
 
 // A row of a curve is of one crack: its rate is the slope of its length, and a plate with several cracks ends where one has the length asked for.
@@ -58,8 +59,10 @@ fn its_rate_is_the_slope_of_its_length() {
 fn the_length_to_stop_at_is_that_of_one_crack() {
     let text = cracked_plate(80.0, 120.0, PLATES[1].1);
     assert!(case(&text, &format!("{NODES} stop.crack_length_mm=11")).is_ok());
-    let error = case(&text, &format!("{NODES} stop.crack_length_mm=10")).unwrap_err().to_string();
-    assert!(error.contains("stop.crack_length_mm = 10") && error.contains("initial crack length 10 mm"), "{error}");
+    assert_refusal(
+        case(&text, &format!("{NODES} stop.crack_length_mm=10")),
+        &["stop.crack_length_mm = 10", "initial crack length 10 mm"],
+    );
 }
 
 // The error that is stated with a life is above the one it has; `perilife verify estimates` has more plates and tolerances.
