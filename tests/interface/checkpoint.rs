@@ -15,28 +15,7 @@ use crate::support::desk::desk;
 // A run that is killed goes on when it is called again, and gives the results of one that nobody killed.
 
 /// A slant crack that takes seconds, its window moving several times.
-const CASE: &str = r#"
-[specimen]
-kind = "plate"
-width_mm = 70.0
-length_mm = 100.0
-thickness_mm = 2.0
-cracks = [{ from_mm = [-9.0, -5.0], to_mm = [9.0, 5.0] }]
-[material]
-youngs_modulus_gpa = 72.0
-poisson_ratio = 0.3
-plane = "stress"
-[loading]
-stress_max_mpa = 70.0
-stress_ratio = 0.1
-[model]
-spacing_mm = 0.6
-[fatigue]
-a = 6450.0
-p = 2.86
-horizon_mm = 3.015
-driver = "bond_strain"
-"#;
+const CASE: &str = include_str!("../reference/cases/checkpoint.toml");
 
 const KEEP: [&str; 4] = ["--checkpoint", "run.ckpt", "--checkpoint-every", "0"];
 

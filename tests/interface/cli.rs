@@ -91,31 +91,7 @@ fn list_names_every_key() {
 }
 
 /// A case coarse and short enough to run in a second.
-pub const SMALL_CASE: &str = r#"
-[specimen]
-kind = "middle_tension"
-width_mm = 60.0
-length_mm = 120.0
-thickness_mm = 2.0
-crack_length_mm = 12.0
-[material]
-youngs_modulus_gpa = 72.0
-poisson_ratio = 0.3
-plane = "stress"
-[loading]
-kind = "constant_amplitude"
-stress_max_mpa = 50.0
-stress_ratio = 0.1
-[model]
-spacing_mm = 2.0
-[fatigue]
-a = 1e5
-p = 3.0
-horizon_mm = 6.03
-[stop]
-crack_length_mm = 20.0
-cycles_max = 1e12
-"#;
+pub const SMALL_CASE: &str = include_str!("../reference/cases/small.toml");
 
 #[test]
 fn a_prediction_writes_what_it_promises() {

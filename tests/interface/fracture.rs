@@ -11,29 +11,7 @@ use crate::support::desk::{desk, done, json};
 use crate::support::rows::assert_says;
 
 /// A plate torn apart in time, small enough for a tenth of a second.
-pub const SCENE: &str = r#"[specimen]
-kind = "plate"
-width_mm = 20
-length_mm = 20
-thickness_mm = 1
-cracks = [{ from_mm = [-10, 0], to_mm = [0, 0] }]
-[material]
-youngs_modulus_gpa = 65
-poisson_ratio = 0.2
-density_kg_m3 = 2235
-fracture_energy_j_m2 = 204
-[model]
-bond_law = "one_bond_two_parameter"
-spacing_mm = 1
-[loading]
-kind = "velocity"
-velocity_mm_s = 5000
-edges = ["top", "bottom"]
-transverse = "held"
-duration_s = 2e-5
-[damage]
-law = "critical_energy"
-"#;
+pub const SCENE: &str = include_str!("../reference/cases/fracture.toml");
 
 fn folder() -> TempDir {
     let dir = desk(&[("torn.toml", &SCENE)]);

@@ -13,26 +13,7 @@ use crate::support::desk::{desk, done, json};
 
 // `fatigue.driver = "tip_field"` as a user calls it: chosen by C and m, its files, its refusals.
 
-const PLATE: &str = r#"
-[specimen]
-kind = "plate"
-width_mm = 40.0
-length_mm = 60.0
-thickness_mm = 2.0
-holes = [{ x_mm = 6.0, y_mm = 7.0, diameter_mm = 8.0 }]
-cracks = [{ from_mm = [-20.0, 0.0], to_mm = [-8.0, 0.0] }]
-[material]
-youngs_modulus_gpa = 73.1
-poisson_ratio = 0.33
-[loading]
-stress_max_mpa = 40.0
-stress_ratio = 0.2
-[model]
-spacing_mm = 1.0
-[fatigue]
-paris_c_mm_per_cycle = 8.95422e-8
-paris_m = 2.874
-"#;
+const PLATE: &str = include_str!("../reference/cases/tip_field.toml");
 
 #[test]
 fn constants_of_k_choose_the_driver_of_tips() {

@@ -9,30 +9,7 @@ use crate::interface::cli::{assert_refused, perilife, texts};
 use crate::support::desk::{desk, json};
 use crate::support::rows::{assert_says, rows};
 
-const CASE: &str = r#"[specimen]
-kind = "middle_tension"
-width_mm = 100.0
-length_mm = 300.0
-thickness_mm = 2.0
-crack_length_mm = 5.0
-[material]
-youngs_modulus_gpa = 72.0
-poisson_ratio = 0.33
-yield_strength_mpa = 340.0
-[loading]
-kind = "spectrum"
-spectrum_file = "flights.csv"
-spectrum_scale_mpa = 100.0
-[model]
-method = "handbook"
-[fatigue]
-growth_law = "walker"
-paris_c_mm_per_cycle = 1e-7
-paris_m = 3.0
-walker_gamma = 0.6
-[stop]
-crack_length_mm = 30.0
-"#;
+const CASE: &str = include_str!("../reference/cases/spectrum.toml");
 const FLIGHTS: &str = "max,min,cycles\n0.6,0.1,20\n1.0,0.05,1\n0.5,0.2,40\n";
 const WHEELER: &str = "spectrum_scale_mpa = 100.0\nretardation = \"wheeler\"\nwheeler_exponent = 1.3\n";
 

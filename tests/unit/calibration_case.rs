@@ -15,25 +15,7 @@ use perilife_calibration::power_law::PowerLaw;
 use perilife_calibration::results::{fit_curves, record};
 use perilife_growth::case::record::FittedRecord;
 
-const GOOD: &str = r#"[measured]
-files = ["curves.csv"]
-from_crack_length_mm = 9.0
-to_crack_length_mm = 13.0
-[specimen]
-kind = "middle_tension"
-width_mm = 152.4
-length_mm = 300.0
-thickness_mm = 2.54
-crack_length_mm = 9.0
-[material]
-name = "al2024-t3"
-[loading]
-kind = "constant_amplitude"
-stress_range_mpa = 48.28
-stress_ratio = 0.2
-[fit]
-parameters = ["a", "p"]
-"#;
+const GOOD: &str = include_str!("../reference/cases/calibration_case.toml");
 
 const CURVES: &str = "specimen,cycles,crack_length_mm\nA,100,8\nA,1000,9\nA,2000,10\nA,2900,11\nA,3700,12\nA,4400,13\nA,5000,14\n\
                       B,0,8.5\nB,500,9\nB,1600,10\nB,2600,11\nB,3450,12\nB,4200,13\n";

@@ -60,20 +60,7 @@ fn every_record_gives_a_law_of_metals() {
     }
 }
 
-const PANEL: &str = r#"
-[specimen]
-kind = "middle_tension"
-width_mm = 100.0
-length_mm = 300.0
-thickness_mm = 2.54
-crack_length_mm = 10.0
-[material]
-name = "al2024-t3-clad-lt"
-[loading]
-stress_max_mpa = 80.0
-stress_ratio = 0.1
-[fatigue]
-"#;
+const PANEL: &str = include_str!("../reference/cases/rate_constant_panel.toml");
 
 fn case(fatigue: &str) -> perilife_base::error::Result<Case> {
     Case::from_toml(&format!("{PANEL}{fatigue}"), "panel", Folder::none(), &[])
