@@ -16,6 +16,7 @@ mod support {
     pub mod field;
     pub mod fits;
     pub mod hand_cases;
+    pub mod installed;
     pub mod lab;
     pub mod made_up_case;
     pub mod made_up_run;

@@ -20,10 +20,7 @@ const COARSE: [&str; 6] =
 /// The same panel from 20 to 40 mm, which the fit covers.
 fn panel() -> String {
     let plate = panel_without_law().replace("crack_length_mm = 9.0", "crack_length_mm = 20.0");
-    plate.replace("method = \"handbook\"", "spacing_mm = 3.0")
-        + "[stop]
-crack_length_mm = 40.0
-"
+    plate.replace("method = \"handbook\"", "spacing_mm = 3.0") + "[stop]\ncrack_length_mm = 40.0\n"
 }
 
 /// A copy of the committed calibration, its measured table and a case to predict.

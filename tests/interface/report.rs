@@ -1,5 +1,6 @@
 //! `perilife report`: one page of a run or a fit with all that it shows, and what cannot be reported.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -9,6 +10,7 @@ use tempfile::{TempDir, tempdir};
 use crate::interface::cli::{assert_refused, perilife, texts};
 use crate::support::daily::panel_without_law;
 use crate::support::desk::{desk, done, json};
+use crate::support::rows::rows;
 
 const LAW: &str = "[fatigue]\nparis_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874\n";
 const MEASURED: &str = "[measured]\nfiles = [\"n.csv\"]\nfrom_crack_length_mm = 9.0\n\
@@ -154,62 +156,49 @@ fn what_cannot_be_reported_is_refused_with_words() {
     let here = dir.path();
     fs::create_dir(here.join("empty")).unwrap();
     fs::write(here.join("notes.html"), "my notes").unwrap();
-    let (result, fit) = ("run/result.json", "fit/fit.json");
-    let kept: Vec<(&str, Vec<u8>)> = [result, fit, "run/a_n.csv", "fit/readings.csv"]
+    let result = "run/result.json";
+    let kept: BTreeMap<&str, String> = [result, "fit/fit.json", "run/a_n.csv", "fit/readings.csv"]
         .into_iter()
-        .map(|file| (file, fs::read(here.join(file)).unwrap()))
+        .map(|file| (file, fs::read_to_string(here.join(file)).unwrap()))
         .collect();
-    let text = |file: &str| String::from_utf8(kept.iter().find(|(name, _)| *name == file).unwrap().1.clone()).unwrap();
     let with = |file: &str, key: &str, value: Value| {
-        let mut object: Value = serde_json::from_str(&text(file)).unwrap();
+        let mut object: Value = serde_json::from_str(&kept[file]).unwrap();
         object[key] = value;
-        Some(object.to_string())
+        object.to_string()
     };
-    let cut = |file: &str| Some(text(file)[..text(file).len() / 2].to_owned());
-    /// What is done to which file (`None`: it is removed), what is reported, exit code, words.
-    type Bad<'b> = (&'b str, Option<String>, &'b str, i32, &'b [&'b str]);
-    let bad: Vec<Bad<'_>> = vec![
-        ("", None, "no", 4, &["no: cannot read"]),
-        ("", None, "panel.toml", 4, &["panel.toml: cannot read"]),
-        ("", None, "empty", 2, &["empty", "result.json and fit.json are missing", "perilife predict"]),
-        (result, cut(result), "run", 2, &["run/result.json", "cut off or damaged", "copy it again"]),
-        (result, Some("[]".to_owned()), "run", 2, &["run/result.json", "is not a result of `perilife predict`"]),
-        (result, Some("{}".to_owned()), "run", 2, &["run/result.json", "missing field `name`"]),
-        (result, with(result, "stop_reason", 7.into()), "run", 2, &["run/result.json", "stop_reason", "7", "expected a string"]),
-        (result, with(result, "life_cycles", (-1.0).into()), "run", 2, &["life_cycles", "-1", "is below zero"]),
-        (result, with(result, "life_cycles", "long".into()), "run", 2, &["life_cycles", "long", "expected f64"]),
-        (result, with(result, "plate", "square".into()), "run", 2, &["plate", "square", "was modified after the run"]),
-        ("run/a_n.csv", cut("run/a_n.csv"), "run", 2, &["run/a_n.csv", "is cut off"]),
-        ("run/a_n.csv", Some(text("run/a_n.csv").replace(",9.000", ",8.000")), "run", 2, &["run/a_n.csv", "is not the table"]),
-        ("run/a_n.csv", None, "run", 2, &["run/a_n.csv", "is missing"]),
-        (fit, cut(fit), "fit", 2, &["fit/fit.json", "cut off or damaged"]),
-        (fit, with(fit, "paris_m", Value::Null), "fit", 2, &["fit/fit.json", "paris_m", "null", "expected f64"]),
-        ("fit/readings.csv", cut("fit/readings.csv"), "fit", 2, &["fit/readings.csv", "is cut off"]),
-        ("fit/readings.csv", None, "fit", 2, &["fit/readings.csv", "is missing"]),
-    ];
-    for (file, content, of, code, words) in bad {
-        match content {
-            Some(content) => fs::write(here.join(file), content).unwrap(),
+    type Bad = (String, Vec<String>, String, i32, Vec<String>);
+    for (file, change, of, code, words) in rows::<Vec<Bad>>("report", "bad") {
+        let change: Vec<&str> = change.iter().map(String::as_str).collect();
+        let text = kept.get(file.as_str());
+        let changed = match change[..] {
+            ["cut"] => text.map(|text| text[..text.len() / 2].to_owned()),
+            ["write", content] => Some(content.to_owned()),
+            ["replace", old, new] => text.map(|text| text.replace(old, new)),
+            ["set", key, value] => Some(with(&file, key, serde_json::from_str(value).unwrap())),
+            _ => None,
+        };
+        match changed {
+            Some(changed) => fs::write(here.join(&file), changed).unwrap(),
             None if file.is_empty() => {}
-            None => fs::remove_file(here.join(file)).unwrap(),
+            None => fs::remove_file(here.join(&file)).unwrap(),
         }
-        let output = perilife(here, &["report", of, "--out", "bad.html"]);
-        assert_refused(&output, code, words);
+        let output = perilife(here, &["report", &of, "--out", "bad.html"]);
+        assert_refused(&output, code, &words);
         assert!(!here.join("bad.html").exists(), "{of}: nothing half-written");
-        if let Some((_, bytes)) = kept.iter().find(|(name, _)| *name == file) {
-            fs::write(here.join(file), bytes).unwrap();
+        if let Some(text) = text {
+            fs::write(here.join(&file), text).unwrap();
         }
     }
     // A result without hashes, as of an earlier version, whose table is broken: by file, line, column and value.
-    fs::write(here.join(result), with(result, "tables", serde_json::json!([])).unwrap()).unwrap();
-    fs::write(here.join("run/a_n.csv"), text("run/a_n.csv").replacen(",9.000000000,", ",nine,", 1)).unwrap();
+    fs::write(here.join(result), with(result, "tables", serde_json::json!([]))).unwrap();
+    fs::write(here.join("run/a_n.csv"), kept["run/a_n.csv"].replacen(",9.000000000,", ",nine,", 1)).unwrap();
     assert_refused(
         &perilife(here, &["report", "run", "--out", "bad.html"]),
         2,
         &["run/a_n.csv:2", "crack_length_mm", "\"nine\""],
     );
-    fs::write(here.join(result), text(result)).unwrap();
-    fs::write(here.join("run/a_n.csv"), text("run/a_n.csv")).unwrap();
+    fs::write(here.join(result), &kept[result]).unwrap();
+    fs::write(here.join("run/a_n.csv"), &kept["run/a_n.csv"]).unwrap();
 
     let in_the_way: [(&str, i32, &[&str]); 4] = [
         ("notes.html", 2, &["notes.html", "did not write"]),
@@ -221,7 +210,7 @@ fn what_cannot_be_reported_is_refused_with_words() {
         assert_refused(&perilife(here, &["report", "run", "--out", out]), code, words);
     }
     assert_eq!(fs::read_to_string(here.join("notes.html")).unwrap(), "my notes");
-    assert_eq!(fs::read(here.join(result)).unwrap(), text(result).into_bytes());
+    assert_eq!(fs::read_to_string(here.join(result)).unwrap(), kept[result]);
 }
 
 #[test]

@@ -132,17 +132,17 @@ fn a_quick_scene_leaves_table_picture_and_summary() {
     let column = |name: &str| header.iter().position(|column| *column == name).unwrap_or_else(|| panic!("no column {name}"));
     assert_eq!(object["points"].as_u64(), Some(rows.len() as u64));
     let number = |row: &csv::StringRecord, name: &str| row[column(name)].parse::<f64>().unwrap_or(f64::NAN);
-    let done: Vec<&csv::StringRecord> = rows.iter().filter(|row| &row[column("status")] == "measured").collect();
-    assert!(done.len() >= 4, "{table}");
-    for row in &done {
+    let measured: Vec<&csv::StringRecord> = rows.iter().filter(|row| &row[column("status")] == "measured").collect();
+    assert!(measured.len() >= 4, "{table}");
+    for row in &measured {
         let all = ["error_percent", "wall_s", "time_ratio", "memory_mb", "points"].map(|name| number(row, name));
         assert!(all.iter().all(|value| value.is_finite() && *value > 0.0), "{row:?}");
         assert!(row[column("command")].starts_with("perilife chart tension_plate --once"), "{row:?}");
     }
-    for row in done.iter().filter(|row| &row[column("on_front")] == "true") {
+    for row in measured.iter().filter(|row| &row[column("on_front")] == "true") {
         let place = |row: &csv::StringRecord| (number(row, "wall_s"), number(row, "error_percent"));
         let (own, beats) = (place(row), |other: (f64, f64), own: (f64, f64)| other.0 < own.0 && other.1 < own.1);
-        assert!(!done.iter().any(|other| beats(place(other), own)), "{row:?} is beaten");
+        assert!(!measured.iter().any(|other| beats(place(other), own)), "{row:?} is beaten");
     }
     for (file, words) in [
         ("chart.svg", "plate in uniform tension"),

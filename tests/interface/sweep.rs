@@ -12,7 +12,7 @@ use tempfile::TempDir;
 use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
 use crate::interface::service::jobs::with_store;
 use crate::support::desk::{desk, done, json};
-use crate::support::server::{PATIENCE, Server, in_folder};
+use crate::support::server::{PATIENCE, Server, in_folder, wait};
 use crate::support::slurm::Slurm;
 
 const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300\nthickness_mm = 2.54\n\
@@ -123,11 +123,7 @@ fn a_killed_sweep_goes_on() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    let begun = Instant::now();
-    while !here.join("out/cases/0001/outcome.toml").is_file() {
-        assert!(begun.elapsed() < PATIENCE, "no case is done");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait("no case is done", || here.join("out/cases/0001/outcome.toml").is_file());
     let _ = process.kill();
     process.wait().unwrap();
     assert!(!here.join("out/sweep.csv").exists(), "it was killed before its end");
@@ -217,11 +213,7 @@ fn workers_of_a_service_give_the_same_table() {
         let service = Server::start(place, &["--jobs", "0"]);
         let jobs = || service.get("/v1/predictions?limit=200").json()["items"].as_array().unwrap().clone();
         let wait_for = |count: usize| {
-            let begun = Instant::now();
-            while jobs().len() < count {
-                assert!(begun.elapsed() < PATIENCE, "{} jobs", jobs().len());
-                std::thread::sleep(Duration::from_millis(20));
-            }
+            wait("too few jobs", || jobs().len() >= count);
         };
         let mut process = start();
         wait_for(6);
@@ -317,11 +309,7 @@ fn an_array_job_of_slurm_gives_the_same_table() {
     let stdout = run(&base);
     assert!(stdout.contains("perilife collect a job's"), "{stdout}");
     assert!(fs::read_to_string(here.join("a job's/job.sh")).unwrap().contains("#SBATCH --array=2\n"));
-    let begun = Instant::now();
-    while perilife(here, &["collect", "a job's"]).status.code() != Some(0) {
-        assert!(begun.elapsed() < PATIENCE, "{:?}", cluster.ask("squeue", &[]));
-        std::thread::sleep(Duration::from_millis(200));
-    }
+    wait("the array job ends", || perilife(here, &["collect", "a job's"]).status.code() == Some(0));
     assert_eq!(rows(&here.join("a job's")), rows(&here.join("local")));
 }
 

@@ -14,6 +14,16 @@ use ureq::http::{Request, Response};
 /// Longest wait for anything, on a machine with other things to do.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
+/// Waits until something is so.
+#[track_caller]
+pub fn wait(what: &str, mut is_so: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !is_so() {
+        assert!(begun.elapsed() < PATIENCE, "{what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
 /// A running `perilife serve` (or `worker`), killed when dropped.
 pub struct Server {
     process: Child,
@@ -213,11 +223,7 @@ impl Server {
     /// Asks the process to stop, and waits for it.
     pub fn stop(&mut self) {
         self.signal("-TERM");
-        let begun = Instant::now();
-        while self.process.try_wait().unwrap().is_none() {
-            assert!(begun.elapsed() < Duration::from_secs(30), "it does not stop");
-            std::thread::sleep(Duration::from_millis(20));
-        }
+        wait("it does not stop", || self.process.try_wait().unwrap().is_some());
     }
 }
 

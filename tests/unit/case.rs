@@ -197,7 +197,7 @@ fn what_is_planned_is_said_to_be_planned() {
 fn what_belongs_to_scenes_is_sent_there() {
     for (key, names) in perilife_base::input::OF_SCENES {
         for value in *names {
-            assert_refusal(read(INLINE, &[&format!("{key}={value}")]), &[key, value, "perilife fracture"]);
+            assert_refusal(read(INLINE, &[&format!("{key}={value}")]), &[*key, *value, "perilife fracture"]);
         }
     }
 }

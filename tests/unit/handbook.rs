@@ -9,7 +9,7 @@ use perilife_plate::specimen::{Specimen, SpecimenKind};
 
 use crate::support::hand_cases::{ALL, PANEL, hand_case, try_hand_case};
 use crate::support::made_up_case::fitted;
-use crate::support::rows::assert_refusal;
+use crate::support::rows::{assert_refusal, assert_says};
 
 // Handbook K against printed and independently checked numbers.
 
@@ -188,9 +188,7 @@ fn only_specimens_of_the_handbook_are_taken() {
     for (specimen, set) in [(plate, ""), (clamped.as_str(), ""), (PANEL, "specimen.length_mm=160")] {
         let set: Vec<&str> = [set].into_iter().filter(|set| !set.is_empty()).collect();
         let error = try_hand_case(specimen, &set).unwrap_err();
-        for words in ["model.method = \"handbook\"", "no K(a)", "\"peridynamics\"", "middle_tension"] {
-            assert!(error.to_string().contains(words), "{words} in {error}");
-        }
+        assert_says(&error.to_string(), &["model.method = \"handbook\"", "no K(a)", "\"peridynamics\"", "middle_tension"]);
         assert_eq!(error.exit_code(), 2);
     }
     // What stops bonds does not stop hand calculation: steep Poisson's ratio, a crack shorter than any spacing would resolve.

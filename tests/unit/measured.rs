@@ -9,7 +9,7 @@ use perilife_measured::{Import, LeaveOut, Measured, MeasuredCurve, PROBLEMS_MAX,
 use proptest::prelude::*;
 
 use crate::support::median::pointwise_median;
-use crate::support::rows::assert_refusal;
+use crate::support::rows::{assert_refusal, assert_says};
 use crate::support::shared::shared;
 
 fn parsed(text: &str) -> Measured {
@@ -62,9 +62,7 @@ fn falling_readings_are_noise_and_counted() {
 fn lengths_are_checked_before_a_window_is_cut() {
     let measured = parsed("cycles,crack_length_mm\n0,10\n10,11\n20,12\n30,13\n40,14\n50,80\n");
     let error = measured.check_lengths(76.2 * MM, "half width").unwrap_err().to_string();
-    for word in ["curve.csv:7", "crack_length_mm = 80", "half width is 76.2 mm"] {
-        assert!(error.contains(word), "{word} in {error}");
-    }
+    assert_says(&error, &["curve.csv:7", "crack_length_mm = 80", "half width is 76.2 mm"]);
     assert!(measured.check_lengths(100.0 * MM, "half width").is_ok());
 }
 

@@ -272,11 +272,10 @@ fn the_way_of_a_tip_is_marked_by_shares_of_the_life() {
     // No larger than the crack at its end asks for, so that there is one picture.
     plate.outline_mm = vec![[-50.0, -30.0], [10.0, -30.0], [10.0, 30.0], [-50.0, 30.0]];
     let svg = plate_svg(&plate, &tables, SIZE);
-    for words in
-        ["25 %", "50 %", "75 %", "90 %", "stress 5 to 50 MPa, R = 0.1 &lt;&amp;&gt;", "cycles: 0", " mm</text>", "aria-label"]
-    {
-        assert!(svg.contains(words), "{words}");
-    }
+    assert_says(
+        &svg,
+        &["25 %", "50 %", "75 %", "90 %", "stress 5 to 50 MPa, R = 0.1 &lt;&amp;&gt;", "cycles: 0", " mm</text>", "aria-label"],
+    );
     assert!(!svg.contains("NaN") && svg.matches("R = 0.1").count() == 2, "the load stands there once, and in the sentence");
     // Four marks, then the tip; growth is even over the cycles.
     let rings: Vec<f64> = numbers_of(&svg, "fill=\"white\" stroke=\"#12171d\"", "stroke-width");

@@ -7,25 +7,16 @@ use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_measured::rates::read;
 use perilife_measured::{RangeKind, RateFileKeys, RateTable};
 
+use crate::support::noise::Chance;
 use crate::support::rows::{assert_refusal, rows};
 
 /// Names of ΔK and of da/dN, each with MPa√m or mm/cycle in a unit of theirs.
 static NAMES: LazyLock<[Vec<(String, f64)>; 2]> = LazyLock::new(|| ["delta_k", "rate"].map(|of| rows("rate_tables", of)));
 
-/// Whole numbers that look random and are the same on every machine (Park and Miller 1988, Commun. ACM 31:1192).
-struct Chance(u64);
-
-impl Chance {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 = self.0 * 48_271 % 2_147_483_647;
-        (self.0 as usize / 7) % bound
-    }
-}
-
 /// Writes a table of rates by chance, reads it, and holds it against the truth; `true` where it was read.
 fn try_table(seed: u64) -> bool {
-    let mut chance = Chance(seed * 7919 + 1);
-    let [(mut k_name, k_unit), (mut rate_name, rate_unit)] = NAMES.each_ref().map(|of| of[chance.below(of.len())].clone());
+    let mut chance = Chance::new(seed);
+    let [(mut k_name, k_unit), (mut rate_name, rate_unit)] = NAMES.each_ref().map(|of| chance.of(of));
     let [log_k, log_rate] = [chance.below(6) == 0, chance.below(6) == 0];
     if log_k {
         k_name = format!("log10 {k_name}");
@@ -35,7 +26,7 @@ fn try_table(seed: u64) -> bool {
     }
     let is_comma = chance.below(3) == 0;
     let separators: &[&str] = if is_comma { &[";", "\t", "; "] } else { &[",", ";", "\t", ", ", "|"] };
-    let separator = separators[chance.below(separators.len())];
+    let separator = chance.of(separators);
     // A name with the separator in it stands in quotes, which begin where the cell does.
     let separator = if k_name.contains(',') { separator.trim_end_matches(' ') } else { separator };
     let quoted = |name: &str| {
@@ -72,7 +63,7 @@ fn try_table(seed: u64) -> bool {
         names.swap(0, 1);
     }
     if says_ratio {
-        names.push(["stress_ratio", "R", "R ratio"][chance.below(3)].to_owned());
+        names.push(chance.of(&["stress_ratio", "R", "R ratio"]).to_owned());
     }
     let rows: Vec<String> = truth.iter().enumerate().map(row).collect();
     let text = format!("{}\n{}\n", names.join(separator), rows.join("\n"));

@@ -178,7 +178,7 @@ pub fn calibration(set: &[String]) -> CalibrationCase {
     CalibrationCase::from_file(&file, set).unwrap()
 }
 
-pub fn fit_to_of_fit_engine(calibration: &CalibrationCase, curves: &[MeasuredCurve]) -> Fit {
+pub fn engine_fit(calibration: &CalibrationCase, curves: &[MeasuredCurve]) -> Fit {
     let mut calibration = calibration.clone();
     calibration.curves = curves.to_vec();
     calibrate(&calibration, &Silent).unwrap()
@@ -187,7 +187,7 @@ pub fn fit_to_of_fit_engine(calibration: &CalibrationCase, curves: &[MeasuredCur
 #[test]
 fn the_median_panel_is_fitted_within_two_percent_of_life() {
     let calibration = calibration(&[]);
-    let found = fit_to_of_fit_engine(&calibration, &calibration.curves);
+    let found = engine_fit(&calibration, &calibration.curves);
     let life = found.record.life_fitted() / found.record.life_measured();
     assert!(found.record.rms_life_error() <= 0.02);
     assert!((life - 1.0).abs() <= 0.025);
@@ -206,7 +206,7 @@ fn what_the_program_chooses_gives_the_constants_of_bonds() {
     let chosen = CalibrationCase::from_text(&left_open, "median", folder.as_path()).unwrap();
     assert!(chosen.case.chosen.as_ref().is_some_and(|why| why.contains("Feddersen")), "{:?}", chosen.case.chosen);
     let on_points = calibration(&[]);
-    let [chosen, on_points] = [&chosen, &on_points].map(|case| fit_to_of_fit_engine(case, &case.curves));
+    let [chosen, on_points] = [&chosen, &on_points].map(|case| engine_fit(case, &case.curves));
     let [a, b] = [&chosen, &on_points].map(|fit| fit.record.constants);
     println!("A {:.4e} for {:.4e}, p {:.4} for {:.4}", a.a, b.a, a.p, b.p);
     // The spacing that the program takes is the one of the file, so that both A belong to one horizon. K of the two differs by up to 0.5 %.

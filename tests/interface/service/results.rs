@@ -33,7 +33,7 @@ fn a_prediction_has_the_files_of_the_command() {
         let job = service.submit("predictions", &of(name, text));
         fs::write(folder.join(format!("{name}.toml")), text).unwrap();
         done(folder, &["predict", &format!("{name}.toml"), "--out", name]);
-        let done = service.succeeded(&job);
+        let ended = service.succeeded(&job);
         for file in fs::read_dir(folder.join(name)).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()) {
             match file.as_str() {
                 ".perilife" => {}
@@ -42,7 +42,7 @@ fn a_prediction_has_the_files_of_the_command() {
                     let [ours, theirs] = [service.file(&job, &file), fs::read(folder.join(name).join(&file)).unwrap()];
                     let [ours, theirs] = [ours, theirs].map(|bytes| timeless(serde_json::from_slice(&bytes).unwrap()));
                     assert_eq!(ours, theirs, "{name}");
-                    assert_eq!(done["summary"]["life_cycles"], theirs["life_cycles"]);
+                    assert_eq!(ended["summary"]["life_cycles"], theirs["life_cycles"]);
                 }
                 file => {
                     assert!(
@@ -52,7 +52,7 @@ fn a_prediction_has_the_files_of_the_command() {
                 }
             }
         }
-        let listed: Vec<&str> = done["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();
+        let listed: Vec<&str> = ended["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();
         // The mark of the command is no file of the service, which adds the report.
         assert_eq!(listed.len(), fs::read_dir(folder.join(name)).unwrap().count(), "{listed:?}");
         done(folder, &["report", name, "--out", "report.html"]);
@@ -61,14 +61,14 @@ fn a_prediction_has_the_files_of_the_command() {
         let [ours, theirs] = [service.file(&job, "report.html"), fs::read(folder.join("report.html")).unwrap()].map(plain);
         assert!(ours.len() > 1000 && ours == theirs, "{name}: the report differs");
         fs::remove_file(folder.join("report.html")).unwrap();
-        for file in done["files"].as_array().unwrap() {
+        for file in ended["files"].as_array().unwrap() {
             let answer = service.get(file["href"].as_str().unwrap()).expect(200);
             assert_eq!(answer.body.len() as i64, file["bytes"].as_i64().unwrap());
             assert!(answer.header("content-type").unwrap().starts_with(file["media_type"].as_str().unwrap()));
             assert!(answer.header("content-security-policy").unwrap().contains("sandbox"), "results are never run");
         }
         resampled_as_exported(folder, &service, name, &job);
-        remaining_life(&service, &job, &done);
+        remaining_life(&service, &job, &ended);
     }
 }
 
@@ -96,10 +96,10 @@ fn resampled_as_exported(folder: &Path, service: &Server, name: &str, job: &str)
 }
 
 /// Remaining life is what the curve says between its rows.
-fn remaining_life(service: &Server, job: &str, done: &Value) {
+fn remaining_life(service: &Server, job: &str, ended: &Value) {
     let number = |value: &Value| value.as_f64().unwrap();
-    let (from, to) = (number(&done["summary"]["crack_length_initial_mm"]), number(&done["summary"]["crack_length_final_mm"]));
-    let life = number(&done["summary"]["life_cycles"]);
+    let (from, to) = (number(&ended["summary"]["crack_length_initial_mm"]), number(&ended["summary"]["crack_length_final_mm"]));
+    let life = number(&ended["summary"]["life_cycles"]);
     let middle = 0.5 * (from + to);
     let answer = service.get(&format!("{job}/remaining?crack_length_mm={middle}&factor=3")).expect(200).json();
     let table = String::from_utf8(service.file(job, "a_n.csv")).unwrap();
@@ -184,7 +184,7 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
         done(folder, &["calibrate", &format!("{name}.toml"), "--out", name]);
         // As JSON with the files in it, and as a form that names no files.
         let job = service.submit("calibrations", &json!({ "name": name, "input": text, "files": { "curve.csv": curve } }));
-        let done = service.succeeded(&job);
+        let ended = service.succeeded(&job);
         let tables: &[&str] = if cfg!(feature = "tables") { &["fit_curves.parquet"] } else { &[] };
         for file in ["fitted.toml", "fit_curves.csv", "fit_band.csv", "fit.svg", "da_dn.svg"].iter().chain(tables) {
             assert!(service.file(&job, file) == fs::read(folder.join(name).join(file)).unwrap(), "{name}: {file} differs");
@@ -211,7 +211,7 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
         } else {
             QUICK.to_owned()
         };
-        let body = json!({ "name": "case", "input": case, "calibration": done["id"] });
+        let body = json!({ "name": "case", "input": case, "calibration": ended["id"] });
         let prediction = service.submit("predictions", &body);
         fs::write(
             folder.join("case.toml"),
@@ -219,7 +219,7 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
         )
         .unwrap();
         done(folder, &["predict", "case.toml", "--out", "case"]);
-        assert_eq!(service.succeeded(&prediction)["calibration"], done["id"]);
+        assert_eq!(service.succeeded(&prediction)["calibration"], ended["id"]);
         assert!(service.file(&prediction, "a_n.csv") == fs::read(folder.join("case/a_n.csv")).unwrap(), "{name}: with the fit");
 
         // What is left has the band of the table, and the interval comes from its low end, as on the command line.
