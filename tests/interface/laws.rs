@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
 
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
-use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife};
+use crate::support::desk::{done, json};
+use crate::support::rows::assert_says;
 
 const SHEET: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 6\n\
                      [material]\nyoungs_modulus_gpa = 71\npoisson_ratio = 0.33\n[model]\nmethod = \"handbook\"\n";
@@ -15,17 +16,6 @@ const WALKER: &str = "[fatigue]\ngrowth_law = \"walker\"\nparis_c_mm_per_cycle =
 
 fn loading(ratio: f64) -> String {
     format!("[loading]\nstress_max_mpa = 90\nstress_ratio = {ratio}\n")
-}
-
-fn done(folder: &Path, arguments: &[&str]) -> (String, String) {
-    let output = perilife(folder, arguments);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {stderr}{stdout}");
-    (stdout, stderr)
-}
-
-fn json(path: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
 /// Readings of sheets of a known law of Walker at two stress ratios, `r1.csv` and `r5.csv`, with the cases they were tested by.
@@ -64,9 +54,10 @@ fn readings_at_two_ratios_become_rates_a_law_and_a_life() {
     // Another stress ratio between them.
     fs::write(here.join("panel.toml"), format!("{SHEET}{}[stop]\ncrack_length_mm = 30\n", loading(0.3))).unwrap();
     let (stdout, _) = done(here, &["calibrate", "laws.toml", "--out", "fit", "--predict", "panel.toml"]);
-    for words in ["walker law at R = 0.1, 0.5", "lowest AICc; ", "paris_c_mm_per_cycle", "  Rejected       ", "panel: life"] {
-        assert!(stdout.contains(words), "{words} in {stdout}");
-    }
+    assert_says(
+        &stdout,
+        &["walker law at R = 0.1, 0.5", "lowest AICc; ", "paris_c_mm_per_cycle", "  Rejected       ", "panel: life"],
+    );
     for file in ["fitted.toml", "fit.json", "fit_rates.csv", "da_dn.svg", "panel/a_n.csv"] {
         assert!(fs::metadata(here.join("fit").join(file)).unwrap().len() > 0, "{file}");
     }

@@ -7,11 +7,12 @@ use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::cargo_bin;
 use serde_json::Value;
-use tempfile::{TempDir, tempdir};
+use tempfile::TempDir;
 
 use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
 use crate::interface::service::jobs::with_store;
-use crate::support::server::{PATIENCE, Server, in_folder};
+use crate::support::desk::{desk, done, json};
+use crate::support::server::{PATIENCE, Server, in_folder, wait};
 use crate::support::slurm::Slurm;
 
 const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300\nthickness_mm = 2.54\n\
@@ -24,18 +25,8 @@ pub const GRID: &str = "case = \"panel.toml\"\n[design]\nkind = \"grid\"\n[[vary
     values = [8.0, 9.5]\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nfrom = 40\nto = 60\ncount = 3\n";
 
 pub fn folder_with(sweep: &str) -> TempDir {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("panel.toml"), PANEL).unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
-    fs::write(dir.path().join("sweep.toml"), sweep).unwrap();
+    let dir = desk(&[("panel.toml", &PANEL), ("small.toml", &SMALL_CASE), ("sweep.toml", &sweep)]);
     dir
-}
-
-fn done(folder: &Path, arguments: &[&str]) -> String {
-    let output = perilife(folder, arguments);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}{stdout}");
-    stdout
 }
 
 /// Rows of a table without `wall_s`, which differs from run to run.
@@ -47,15 +38,11 @@ fn rows(folder: &Path) -> Vec<Vec<String>> {
     rows
 }
 
-fn json(path: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
-}
-
 #[test]
 fn a_grid_gives_the_lives_of_single_predictions() {
     let dir = folder_with(GRID);
     let here = dir.path();
-    let stdout = done(here, &["sweep", "sweep.toml", "--out", "out", "--threads", "3"]);
+    let (stdout, _) = done(here, &["sweep", "sweep.toml", "--out", "out", "--threads", "3"]);
     assert!(stdout.contains("6 cases, 6 succeeded, 0 failed") && stdout.contains("median"), "{stdout}");
     let rows = rows(&here.join("out"));
     let head = "case,specimen.crack_length_mm,loading.stress_range_mpa,life_cycles,stop_reason,crack_length_final_mm,problem,life_is_lower_bound";
@@ -88,7 +75,7 @@ fn a_grid_gives_the_lives_of_single_predictions() {
     assert_eq!(fs::read_dir(here).unwrap().count(), 5, "no temporary folder stays");
 
     // Summaries alone, and the figures on stdout.
-    let stdout = done(here, &["sweep", "sweep.toml", "--out", "brief", "--summary-only", "--json"]);
+    let (stdout, _) = done(here, &["sweep", "sweep.toml", "--out", "brief", "--summary-only", "--json"]);
     assert_eq!(serde_json::from_str::<Value>(&stdout).unwrap(), json(&here.join("brief/sweep.json")));
     assert_eq!(self::rows(&here.join("brief")), rows);
     assert!(!here.join("brief/cases/0001/a_n.csv").exists());
@@ -136,11 +123,7 @@ fn a_killed_sweep_goes_on() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    let begun = Instant::now();
-    while !here.join("out/cases/0001/outcome.toml").is_file() {
-        assert!(begun.elapsed() < PATIENCE, "no case is done");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait("no case is done", || here.join("out/cases/0001/outcome.toml").is_file());
     let _ = process.kill();
     process.wait().unwrap();
     assert!(!here.join("out/sweep.csv").exists(), "it was killed before its end");
@@ -164,7 +147,7 @@ fn a_failing_case_is_a_row() {
     let design = "[design]\nkind = \"grid\"\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nvalues = [48.28, 130.0]\n";
     let dir = folder_with(&format!("case = {:?}\n{design}", panel.display().to_string()));
     let here = dir.path();
-    let stdout = done(here, &["sweep", "sweep.toml", "--out", "out"]);
+    let (stdout, _) = done(here, &["sweep", "sweep.toml", "--out", "out"]);
     assert!(
         stdout.contains("1 succeeded, 1 failed") && stdout.contains("failed         0002: fatigue.allow_extrapolation"),
         "{stdout}"
@@ -230,11 +213,7 @@ fn workers_of_a_service_give_the_same_table() {
         let service = Server::start(place, &["--jobs", "0"]);
         let jobs = || service.get("/v1/predictions?limit=200").json()["items"].as_array().unwrap().clone();
         let wait_for = |count: usize| {
-            let begun = Instant::now();
-            while jobs().len() < count {
-                assert!(begun.elapsed() < PATIENCE, "{} jobs", jobs().len());
-                std::thread::sleep(Duration::from_millis(20));
-            }
+            wait("too few jobs", || jobs().len() >= count);
         };
         let mut process = start();
         wait_for(6);
@@ -330,11 +309,7 @@ fn an_array_job_of_slurm_gives_the_same_table() {
     let stdout = run(&base);
     assert!(stdout.contains("perilife collect a job's"), "{stdout}");
     assert!(fs::read_to_string(here.join("a job's/job.sh")).unwrap().contains("#SBATCH --array=2\n"));
-    let begun = Instant::now();
-    while perilife(here, &["collect", "a job's"]).status.code() != Some(0) {
-        assert!(begun.elapsed() < PATIENCE, "{:?}", cluster.ask("squeue", &[]));
-        std::thread::sleep(Duration::from_millis(200));
-    }
+    wait("the array job ends", || perilife(here, &["collect", "a job's"]).status.code() == Some(0));
     assert_eq!(rows(&here.join("a job's")), rows(&here.join("local")));
 }
 

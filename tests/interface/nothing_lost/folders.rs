@@ -6,18 +6,14 @@ use std::path::Path;
 
 use tempfile::{TempDir, tempdir};
 
-use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife};
 use crate::support::daily::{KINDS, content, names, write_inputs};
+use crate::support::desk::done;
 
 fn inputs() -> TempDir {
     let dir = tempdir().unwrap();
     write_inputs(dir.path());
     dir
-}
-
-fn done(folder: &Path, arguments: &[&str]) {
-    let output = perilife(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", texts(&output).1);
 }
 
 /// A file, a hidden one, a folder, one below a folder of the run, a link, a project: each is named, and stays with all else as it was.
