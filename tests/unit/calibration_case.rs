@@ -195,7 +195,7 @@ fn readings_say_load_and_first_crack_length_where_the_file_does_not() {
 #[test]
 fn a_load_of_the_case_that_is_not_that_of_its_readings_is_told() {
     let read = |head: &str, load: &str, text: &str| {
-        let line = |(i, line)| if i == 0 { format!("{line},{head}\n") } else { format!("{line},{load}\n") };
+        let line = |(i, line): (usize, &str)| if i == 0 { format!("{line},{head}\n") } else { format!("{line},{load}\n") };
         let curves: String = CURVES.lines().enumerate().map(line).collect();
         let folder = desk(&[("curves.csv", &curves), ("alloy.toml", &text)]);
         CalibrationCase::from_file(&folder.path().join("alloy.toml"), &[])

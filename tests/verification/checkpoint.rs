@@ -8,7 +8,7 @@ use perilife_growth::case::Case;
 use perilife_growth::predict::checkpoint::Checkpoint;
 use perilife_growth::predict::{Observer, Prediction, Progress, Silent, predict, resume};
 
-use crate::support::plates::case;
+use crate::support::plates::{BOND_STRAIN, case};
 use crate::support::rows::rows;
 
 /// Keeps every checkpoint as the bytes of its file, and the blocks before it.
