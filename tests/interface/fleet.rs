@@ -65,13 +65,10 @@ fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
     );
     let again = fs::read_to_string(dir.path().join("again/fleet.csv")).unwrap();
     // Without a POD the fleet has an interval all the same: that of its plate at 5 %.
-    let output = perilife(
-        dir.path(),
-        &["predict", "case.toml", "--out", "plain", "--fleet", "500", "--seed", "7", "--inspect-from", "10"],
-    );
+    let (stdout, _) =
+        done(dir.path(), &["predict", "case.toml", "--out", "plain", "--fleet", "500", "--seed", "7", "--inspect-from", "10"]);
     let plain = json(&dir.path().join("plain/result.json"))["fleet"]["inspections"].clone();
     let every = plain["detectable_to_critical_cycles"]["p05"].as_f64().unwrap() / 3.0;
-    let stdout = texts(&output).0;
     let line = stdout.lines().find_map(|line| line.strip_prefix("  Inspect every  ")).unwrap();
     let (cycles, basis) = line.split_once(" cycles ").unwrap();
     assert_eq!(

@@ -103,7 +103,7 @@ const CASE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 60\nlength_mm = 100
 #[test]
 fn a_run_on_nodes_has_its_files() {
     let dir = desk(&[("case.toml", &CASE.replace("crack_length_mm = 30", "crack_length_mm = 20"))]);
-    let (stdout, stderr) = done(dir.path(), &["predict", "case.toml", "--out", "run", "--paraview"]);
+    let (stdout, _) = done(dir.path(), &["predict", "case.toml", "--out", "run", "--paraview"]);
     assert!(stdout.contains("  Method         element_free_galerkin, "), "{stdout}");
     for file in ["a_n.csv", "crack_path.csv", "a_n.svg", "nodes.svg", "stress.svg", "paraview/run.pvd"] {
         assert!(dir.path().join("run").join(file).is_file(), "{file}");

@@ -10,7 +10,7 @@ use tempfile::{TempDir, tempdir};
 use crate::interface::cli::{assert_refused, perilife, texts};
 use crate::support::daily::panel_without_law;
 use crate::support::desk::{desk, done, json};
-use crate::support::rows::rows;
+use crate::support::rows::{assert_says, rows};
 
 const LAW: &str = "[fatigue]\nparis_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874\n";
 const MEASURED: &str = "[measured]\nfiles = [\"n.csv\"]\nfrom_crack_length_mm = 9.0\n\

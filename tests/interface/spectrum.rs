@@ -54,7 +54,7 @@ fn keys_that_do_not_make_a_spectrum_are_refused() {
 fn check_and_predict_say_what_the_spectrum_is() {
     let wheeler = CASE.replace("spectrum_scale_mpa = 100.0\n", WHEELER);
     let (_, output) = run(&wheeler, "flights.csv", FLIGHTS, &["check", "case.toml", "-v"]);
-    let (stdout, stderr) = texts(&output);
+    let (stdout, _) = texts(&output);
     assert_says(
         &stdout,
         &["5 to 100 MPa", "flights.csv (cycles): 61 cycles a pass", "3 kinds", "repeated until failure", "wheeler"],

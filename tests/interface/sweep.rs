@@ -174,7 +174,7 @@ fn shards_and_collect_give_the_same_table() {
     let here = dir.path();
     done(here, &["sweep", "sweep.toml", "--out", "whole"]);
     let part = |i: &str| done(here, &["sweep", "sweep.toml", "--out", "parts", "--shard", i]);
-    assert!(part("1/4").contains("sweep 1/4: 2 cases, 2 run, 0 failed"));
+    assert!(part("1/4").0.contains("sweep 1/4: 2 cases, 2 run, 0 failed"));
     part("3/4");
     let output = perilife(here, &["collect", "parts"]);
     assert_eq!(output.status.code(), Some(3));

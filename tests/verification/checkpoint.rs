@@ -92,7 +92,6 @@ fn taken_up(scenes: &str) {
         let keeping = Keeping::default();
         let whole = predict(&case, &keeping).unwrap();
         let kept = keeping.kept();
-        let sizes: Vec<usize> = kept.iter().map(|(bytes, _)| bytes.len() / 1000).collect();
         assert!(!kept.is_empty(), "{name}: no checkpoint, so this scene tests nothing");
         // One that keeps nothing goes the same way.
         if number % 4 == 0 {

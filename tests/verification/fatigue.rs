@@ -93,7 +93,6 @@ fn every_scene_ends_with_a_named_stop_and_an_orderly_curve() {
     for (name, plate, set, ends) in rows::<Vec<(String, String, Vec<String>, Vec<String>)>>("fatigue", "ends") {
         let (specimen, set): (_, Vec<&str>) = (&plates[&plate], set.iter().map(String::as_str).collect());
         let run = grow(specimen, &set);
-        let figures = &run.figures;
         assert!(ends.iter().any(|end| end == run.stop.name()), "{name} ended as {}", run.stop);
         let first = &run.curve[0];
         assert_eq!(first.cycles, 0.0, "{name}");
