@@ -105,7 +105,7 @@ fn a_slip_in_a_case_to_predict_costs_no_calibration() {
     let dir = copy_of_the_calibration();
     fs::write(dir.path().join("slip.toml"), panel().replace("width_mm", "widht_mm")).unwrap();
     let arguments = ["calibrate", "case.toml", "--out", "out", "--predict", "panel.toml", "slip.toml"];
-    assert_refused(&perilife(dir.path(), &arguments), 2, &["slip.toml:4", "specimen.widht_mm"]);
+    assert_refused(&perilife(dir.path(), &arguments), 2, &["slip.toml:3", "specimen.widht_mm"]);
     let arguments = ["calibrate", "case.toml", "--out", "out", "--predict", "panel.toml", "panel.toml"];
     assert_refused(&perilife(dir.path(), &arguments), 2, &["--predict", "panel.toml", "same case name"]);
     assert!(!dir.path().join("out").exists());

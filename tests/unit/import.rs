@@ -207,8 +207,9 @@ fn workbooks_are_read_by_sheet() {
         rows
     };
     let notes = vec![words(&["Operator", "J. Doe"]), words(&["Machine", "MTS"])];
+    // The bytes say what it is, not the name.
     let of = |bytes: &[u8], sheet: Option<&str>| {
-        parse(bytes, Path::new("lab.xlsx"), &Import { sheet: sheet.map(|name| Sheet(name.to_owned())), ..plain() })
+        parse(bytes, Path::new("book"), &Import { sheet: sheet.map(|name| Sheet(name.to_owned())), ..plain() })
     };
     let one = workbook(&[("Notes", notes.clone()), ("data", readings(0.0))]);
     all_are_the_curve("the only sheet of readings", of(&one, None), 1);

@@ -101,7 +101,7 @@ fn every_key_refuses_values_of_another_sort_and_beyond_reason() {
             ] {
                 let wrong = with(&told, &key, Value::Float(value));
                 let is_said = wrong.len() == 1 && wrong[0].starts_with(&path) && wrong[0].contains(words);
-                assert!(is_said && wrong[0].contains("between"), "{words}: {wrong:?}");
+                assert!(is_said && wrong[0].contains("between"), "{path} = {value}: {words} in {wrong:?}");
                 rows += 1;
             }
         }

@@ -10,7 +10,6 @@ use perilife_plate::specimen::{LengthConvention, Specimen, SpecimenKind};
 use crate::support::rows::rows;
 
 const TENSION: &str = "stress_max_mpa = 50";
-const FORCE: &str = "force_max_n = 1000";
 const SIZES: &str = "width_mm = 100\nlength_mm = 200\nthickness_mm = 2\n";
 
 fn read(specimen: &str, loading: &str, more: &str) -> Result<Specimen> {
