@@ -51,7 +51,7 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
     );
     let (said, _) = done(dir.path(), &["predict", "case.toml", "--out", "given", "--set", "fatigue.lot=same"]);
     assert!(said.contains("same lot") && !said.contains("fatigue.lot"), "{said}");
-    let result = json(&dir.path().join("run/result.json"));
+    let result = json(dir.path().join("run/result.json"));
     let band = &result["band"];
     assert_eq!((&band["specimens"], &band["assumed_scatter"], &band["lot"]), (&1.into(), &true.into(), &"same".into()));
     let [low, middle, high] = ["cycles_p05", "cycles_p50", "cycles_p95"].map(|key| band[key].as_f64().unwrap());
@@ -78,7 +78,7 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
         done(dir.path(), &["predict", "case.toml", "--out", "bare", "--set", without, "--inspect-from", "20", "--factor", "2"]);
     assert!(stdout.contains("Scatter band   not available: fitted law without [population]"), "{stdout}");
     assert!(stdout.contains("(remaining life / 2; no scatter band)"), "{stdout}");
-    let result = json(&dir.path().join("bare/result.json"));
+    let result = json(dir.path().join("bare/result.json"));
     assert!(result["band"].is_null() && result["inspection"]["has_band"] == false);
     assert!(!fs::read_to_string(dir.path().join("bare/a_n.csv")).unwrap().contains("cycles_p05"));
     fs::write(dir.path().join("bare.toml"), record.replacen("pivot = ", "pivot = -", 1)).unwrap();
@@ -97,7 +97,7 @@ fn readings_of_the_plate_narrow_what_it_has_left() {
         done(dir.path(), &["predict", "case.toml", "--out", "run", "--measured", "own.csv", "--inspect-from", "30"]);
     println!("{stdout}");
     assert!(stdout.contains("  This plate     last reading 25.0 mm at "), "{stdout}");
-    let result = json(&dir.path().join("run/result.json"));
+    let result = json(dir.path().join("run/result.json"));
     let (own, lot) = (&result["measured"], &result["measured"]["of_lot"]);
     let keys = ["remaining_cycles_p05", "remaining_cycles_p50", "remaining_cycles_p95"];
     let [own, lot] = [own, lot].map(|object| keys.map(|key| object[key].as_f64().unwrap()));

@@ -56,7 +56,7 @@ fn a_calibration_with_a_prediction_and_its_export() {
 
     // The record reads back and says what fit.json says; a case that names it reads it.
     let record: FittedRecord = toml::from_str(&fs::read_to_string(fit.join("fitted.toml")).unwrap()).unwrap();
-    let report = json(&fit.join("fit.json"));
+    let report = json(fit.join("fit.json"));
     // The JSON reader may miss the last bit of a number.
     for (key, value) in [("a", record.a), ("p", record.p)] {
         assert!((report[key].as_f64().unwrap() / value - 1.0).abs() < 1e-15, "{key}: {report}");
@@ -72,7 +72,7 @@ fn a_calibration_with_a_prediction_and_its_export() {
     done(dir.path(), &arguments);
     let rows = read_a_n(&dir.path().join("a_n.csv")).unwrap();
     assert_eq!(rows.len(), 200);
-    assert_eq!(Some(rows[199].cycles), json(&fit.join("panel/result.json"))["life_cycles"].as_f64());
+    assert_eq!(Some(rows[199].cycles), json(fit.join("panel/result.json"))["life_cycles"].as_f64());
     assert!(rows.windows(2).all(|w| w[0].cycles < w[1].cycles && w[0].crack_length_mm <= w[1].crack_length_mm));
     assert!((rows[0].crack_length_mm - 20.0).abs() < 1e-9 && (rows[199].crack_length_mm - 40.0).abs() < 1e-9);
 
@@ -83,7 +83,7 @@ fn a_calibration_with_a_prediction_and_its_export() {
     let of_rates = "[measured]\nrates = [\"out/fit/rates.csv\"]\n[fit]\nlaw = \"paris\"\n";
     fs::write(dir.path().join("of_rates.toml"), of_rates).unwrap();
     done(dir.path(), &["calibrate", "of_rates.toml", "--out", "out/rates", "--json"]);
-    let [by_rates, by_lives] = ["out/rates", "out/fit"].map(|folder| json(&dir.path().join(folder).join("fit.json")));
+    let [by_rates, by_lives] = ["out/rates", "out/fit"].map(|folder| json(dir.path().join(folder).join("fit.json")));
     let of = |value: &serde_json::Value| value.as_f64().unwrap();
     assert!((of(&by_rates["constants"]["paris_m"]) / of(&by_lives["paris_m"]) - 1.0).abs() < 0.1, "{by_rates}");
     assert!(dir.path().join("out/rates/rates.csv").is_file());

@@ -30,7 +30,7 @@ fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
         ],
     );
     let run = dir.path().join("run");
-    let (result, table) = (json(&run.join("result.json")), fs::read_to_string(run.join("fleet.csv")).unwrap());
+    let (result, table) = (json(run.join("result.json")), fs::read_to_string(run.join("fleet.csv")).unwrap());
     assert_eq!((table.lines().count(), &result["fleet"]["plates"]), (501, &500.into()));
     let quantile = |name: &str| result["fleet"]["life_cycles"][name].as_f64().unwrap();
     assert!(quantile("p05") < quantile("p50") && quantile("p50") < quantile("p95"), "{}", result["fleet"]);
@@ -67,7 +67,7 @@ fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
     // Without a POD the fleet has an interval all the same: that of its plate at 5 %.
     let (stdout, _) =
         done(dir.path(), &["predict", "case.toml", "--out", "plain", "--fleet", "500", "--seed", "7", "--inspect-from", "10"]);
-    let plain = json(&dir.path().join("plain/result.json"))["fleet"]["inspections"].clone();
+    let plain = json(dir.path().join("plain/result.json"))["fleet"]["inspections"].clone();
     let every = plain["detectable_to_critical_cycles"]["p05"].as_f64().unwrap() / 3.0;
     let line = stdout.lines().find_map(|line| line.strip_prefix("  Inspect every  ")).unwrap();
     let (cycles, basis) = line.split_once(" cycles ").unwrap();

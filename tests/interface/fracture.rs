@@ -14,8 +14,7 @@ use crate::support::rows::assert_says;
 pub const SCENE: &str = include_str!("../reference/cases/fracture.toml");
 
 fn folder() -> TempDir {
-    let dir = desk(&[("torn.toml", &SCENE)]);
-    dir
+    desk(&[("torn.toml", &SCENE)])
 }
 
 #[test]
@@ -24,7 +23,7 @@ fn a_scene_writes_what_it_promises() {
     let (stdout, _) = done(dir.path(), &["fracture", "torn.toml", "--out", "out/run", "--json", "--paraview"]);
     let printed: Value = serde_json::from_str(&stdout).expect("one JSON object and nothing else");
     let run = dir.path().join("out/run");
-    let written = json(&run.join("result.json"));
+    let written = json(run.join("result.json"));
     assert_eq!(printed, written);
     let charts = ["load_displacement.svg", "load_time.svg", "energies.svg", "broken_bonds.svg"];
     for file in ["damage_first.svg", "damage.svg", "paraview/run.pvd"].iter().chain(&charts) {
@@ -73,7 +72,7 @@ fn tables_hold_the_histories() {
     // Both sides at 5000 mm/s over 20 µs: 0.2 mm, to the last time step.
     let last = rows.last().unwrap();
     assert!((number(last[2]) - 1e4 * number(last[1])).abs() < 1e-9 && (number(last[1]) - 2e-5).abs() < 2e-7);
-    let result = json(&run.join("result.json"));
+    let result = json(run.join("result.json"));
     let peak = rows.iter().map(|row| number(row[3])).fold(0.0, f64::max);
     assert!((result["peak_load_n"].as_f64().unwrap() - peak).abs() < 1e-9 * peak);
     assert_eq!(result["broken_bonds"].as_f64(), Some(number(last[4])));
@@ -91,11 +90,11 @@ fn keys_are_overridden_and_the_folder_replaced() {
     let call = |set: &str| perilife(dir.path(), &["fracture", "torn.toml", "--out", "run", "--set", set]);
     let (stdout, _) = texts(&call("loading.duration_s=1e-6"));
     assert_says(&stdout, &["peak load", "done", "separated      never", "400 points", "Results        run"]);
-    assert!(json(&dir.path().join("run/result.json"))["separated_step"].is_null());
+    assert!(json(dir.path().join("run/result.json"))["separated_step"].is_null());
     assert_eq!(call("model.spacing_mm=2").status.code(), Some(0));
-    assert_eq!(json(&dir.path().join("run/result.json"))["points"], 100);
+    assert_eq!(json(dir.path().join("run/result.json"))["points"], 100);
     assert_refused(&call("model.spacing_mm=nan"), 2, &["torn.toml", "model.spacing_mm", "--set"]);
-    assert_eq!(json(&dir.path().join("run/result.json"))["points"], 100, "the earlier result stands");
+    assert_eq!(json(dir.path().join("run/result.json"))["points"], 100, "the earlier result stands");
     fs::create_dir(dir.path().join("thesis")).unwrap();
     fs::write(dir.path().join("thesis/chapter"), "years of work").unwrap();
     let output = perilife(dir.path(), &["fracture", "torn.toml", "--out", "thesis"]);

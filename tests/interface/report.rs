@@ -62,7 +62,7 @@ fn assert_alone(page: &str) {
         assert!(!page.contains(outside), "{outside} in the page");
     }
     assert!(page.starts_with("<!doctype html>") && page.ends_with("</html>\n") && !page.contains("NaN"), "whole, without NaN");
-    assert_says(&page, &["@page", "counter(page) \" of \" counter(pages)", "@media print", "role=\"img\""]);
+    assert_says(page, &["@page", "counter(page) \" of \" counter(pages)", "@media print", "role=\"img\""]);
     let (open, close) = (page.matches("<svg").count(), page.matches("</svg>").count());
     assert!(open == close && open > 3, "{open} drawings, {close} ends");
 }

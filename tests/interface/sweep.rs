@@ -25,8 +25,7 @@ pub const GRID: &str = "case = \"panel.toml\"\n[design]\nkind = \"grid\"\n[[vary
     values = [8.0, 9.5]\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nfrom = 40\nto = 60\ncount = 3\n";
 
 pub fn folder_with(sweep: &str) -> TempDir {
-    let dir = desk(&[("panel.toml", &PANEL), ("small.toml", &SMALL_CASE), ("sweep.toml", &sweep)]);
-    dir
+    desk(&[("panel.toml", &PANEL), ("small.toml", &SMALL_CASE), ("sweep.toml", &sweep)])
 }
 
 /// Rows of a table without `wall_s`, which differs from run to run.
@@ -65,7 +64,7 @@ fn a_grid_gives_the_lives_of_single_predictions() {
         lives.push(row[3].parse::<f64>().unwrap());
     }
     lives.sort_by(f64::total_cmp);
-    let figures = json(&here.join("out/sweep.json"));
+    let figures = json(here.join("out/sweep.json"));
     let quantile = |key: &str| figures["life_cycles"][key].as_f64().unwrap();
     assert!((quantile("p50") - 0.5 * (lives[2] + lives[3])).abs() < 1e-6);
     assert!((quantile("p05") - (lives[0] + 0.25 * (lives[1] - lives[0]))).abs() < 1e-6, "definition 7");
@@ -76,7 +75,7 @@ fn a_grid_gives_the_lives_of_single_predictions() {
 
     // Summaries alone, and the figures on stdout.
     let (stdout, _) = done(here, &["sweep", "sweep.toml", "--out", "brief", "--summary-only", "--json"]);
-    assert_eq!(serde_json::from_str::<Value>(&stdout).unwrap(), json(&here.join("brief/sweep.json")));
+    assert_eq!(serde_json::from_str::<Value>(&stdout).unwrap(), json(here.join("brief/sweep.json")));
     assert_eq!(self::rows(&here.join("brief")), rows);
     assert!(!here.join("brief/cases/0001/a_n.csv").exists());
     // Files that are wanted later are made then.
@@ -155,7 +154,7 @@ fn a_failing_case_is_a_row() {
     let table = fs::read_to_string(here.join("out/sweep.csv")).unwrap();
     let row = table.lines().nth(2).unwrap();
     assert!(row.starts_with("0002,130.0000000,,,,") && row.contains("above the tested ΔK"), "{row}");
-    assert_eq!(json(&here.join("out/sweep.json"))["failures"][0]["case"], "0002");
+    assert_eq!(json(here.join("out/sweep.json"))["failures"][0]["case"], "0002");
     // It is not tried again, and where no case has a result the sweep has none.
     assert!(texts(&perilife(here, &["sweep", "sweep.toml", "--out", "out"])).1.contains("2 of 2 cases already finished"));
     let output = perilife(here, &["sweep", "sweep.toml", "--out", "none", "--set", "vary[0].values=[130.0]"]);
@@ -179,7 +178,7 @@ fn shards_and_collect_give_the_same_table() {
     let output = perilife(here, &["collect", "parts"]);
     assert_eq!(output.status.code(), Some(3));
     assert!(texts(&output).1.contains("3 of 6 cases are missing: 0002, 0004, 0006;"), "{}", texts(&output).1);
-    assert_eq!(json(&here.join("parts/sweep.json"))["missing_cases"], serde_json::json!(["0002", "0004", "0006"]));
+    assert_eq!(json(here.join("parts/sweep.json"))["missing_cases"], serde_json::json!(["0002", "0004", "0006"]));
     assert!(fs::read_to_string(here.join("parts/sweep.csv")).unwrap().contains("0002,8.000000000,50.00000000,,,,,not run yet"));
     for i in ["2/4", "4/4"] {
         part(i);
@@ -340,7 +339,7 @@ fn drawn_laws_scatter_as_the_specimens_did() {
     fs::write(here.join("panel.toml"), panel).unwrap();
     fs::write(here.join("scatter.toml"), "case = \"panel.toml\"\n[design]\nkind = \"fitted_scatter\"\nsamples = 400\n").unwrap();
     done(here, &["sweep", "scatter.toml", "--out", "drawn", "--summary-only"]);
-    let life = |folder: &str, key: &str| json(&here.join(folder).join("sweep.json"))["life_cycles"][key].as_f64().unwrap();
+    let life = |folder: &str, key: &str| json(here.join(folder).join("sweep.json"))["life_cycles"][key].as_f64().unwrap();
     for key in ["p05", "p50", "p95"] {
         let [tests, drawn] = ["tests", "drawn"].map(|folder| life(folder, key));
         println!("{key}: {tests:.0} of the panels, {drawn:.0} drawn");

@@ -96,7 +96,7 @@ fn loads_without_columns_are_told_by_the_rates() {
     let fit = fitted(&format!("cycles,crack_length_mm\n{}", lines_of(&made, |_| String::new())), "");
     let warning = fit.warnings.iter().find(|line| line.contains("rate changes in specimen")).unwrap();
     // 21 mm is the 19th reading, on line 20; a fifth more force is 1.728 times the rate.
-    assert_says(&warning, &["test.csv: lines 20 to 21: ", "above 21 mm it is 1.73 times", "force_max_kn"]);
+    assert_says(warning, &["test.csv: lines 20 to 21: ", "above 21 mm it is 1.73 times", "force_max_kn"]);
     let clean = fitted(&format!("cycles,crack_length_mm\n{}", lines_of(&plain(0.5), |_| String::new())), "");
     assert!(clean.warnings.is_empty(), "{:?}", clean.warnings);
 }
