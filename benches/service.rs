@@ -3,17 +3,18 @@
 //! `cargo bench --profile dev --bench service`
 
 #[expect(dead_code, reason = "tests use the rest of it")]
-#[path = "../tests/support/postgres.rs"]
-mod postgres;
-#[expect(dead_code, reason = "tests use the rest of it")]
-#[path = "../tests/support/server.rs"]
-mod server;
+#[path = "../tests/support"]
+mod support {
+    pub mod installed;
+    pub mod postgres;
+    pub mod server;
+}
 
 use std::time::{Duration, Instant};
 
-use postgres::Postgres;
 use serde_json::json;
-use server::{Server, in_folder};
+use support::postgres::Postgres;
+use support::server::{Server, in_folder};
 
 /// Requests of mixed reads, and connections that send them.
 const REQUESTS: usize = 10_000;

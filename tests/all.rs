@@ -11,10 +11,13 @@ mod support {
     pub mod browser;
     pub mod correspondence;
     pub mod daily;
+    pub mod desk;
     pub mod fatigue_test;
     pub mod field;
     pub mod fits;
     pub mod hand_cases;
+    pub mod installed;
+    pub mod lab;
     pub mod made_up_case;
     pub mod made_up_run;
     pub mod median;
@@ -22,10 +25,12 @@ mod support {
     pub mod noise;
     pub mod plates;
     pub mod postgres;
+    pub mod rows;
     pub mod scenes;
     pub mod server;
     pub mod shared;
     pub mod slurm;
     pub mod statics;
     pub mod workbook;
+    pub mod written;
 }

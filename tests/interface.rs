@@ -1,22 +1,14 @@
 //! Do the doors work?
 
-mod bad_csv;
-mod bad_scenes;
-mod bad_sweeps;
-mod bad_toml;
 mod band;
 mod calibrate;
-mod chart;
 mod check;
-mod checkpoint;
 pub mod cli;
 mod doors;
-mod element_free;
 mod ends;
 mod export;
 mod fleet;
 mod fracture;
-mod hand_calculation;
 mod laws;
 mod nothing_lost;
 mod part_through;
@@ -27,11 +19,10 @@ mod report;
 mod service;
 mod sif;
 mod spectrum;
-mod stability;
 mod sweep;
-mod time_limit;
-mod tip_field;
 mod traceable;
 mod units;
-mod validate;
-mod verify;
+mod studies;
+mod bad_files;
+mod checkpoint;
+mod methods;

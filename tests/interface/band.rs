@@ -3,10 +3,11 @@
 use std::fs;
 use std::path::Path;
 
-use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::desk::{done, json};
+use crate::support::rows::assert_says;
 
 const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300.0\nthickness_mm = 2.54\ncrack_length_mm = 9.0\n\
     [material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n[model]\nmethod = \"handbook\"\n";
@@ -23,17 +24,6 @@ fn folder() -> TempDir {
     dir
 }
 
-fn done(folder: &Path, arguments: &[&str]) -> String {
-    let output = perilife(folder, arguments);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
-    stdout
-}
-
-fn json(path: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
-}
-
 /// The first readings of the median, as a table of their own.
 fn write_readings(folder: &Path, name: &str, to_mm: f64, factor: f64) {
     let table = fs::read_to_string(folder.join("median.csv")).unwrap();
@@ -48,19 +38,20 @@ fn write_readings(folder: &Path, name: &str, to_mm: f64, factor: f64) {
 #[test]
 fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
     let dir = folder();
-    let stdout = done(dir.path(), &["predict", "case.toml", "--out", "run", "--inspect-from", "20"]);
+    let (stdout, _) = done(dir.path(), &["predict", "case.toml", "--out", "run", "--inspect-from", "20"]);
     println!("{stdout}");
-    for words in [
-        "cycles (median; 90 % band ",
-        "from 1 specimen, same lot (for another lot: fatigue.lot = \"other\"); scatter assumed",
-        "  Remaining  ",
-        "(5 % remaining life / 3)",
-    ] {
-        assert!(stdout.contains(words), "{words} in {stdout}");
-    }
-    let said = done(dir.path(), &["predict", "case.toml", "--out", "given", "--set", "fatigue.lot=same"]);
+    assert_says(
+        &stdout,
+        &[
+            "cycles (median; 90 % band ",
+            "from 1 specimen, same lot (for another lot: fatigue.lot = \"other\"); scatter assumed",
+            "  Remaining  ",
+            "(5 % remaining life / 3)",
+        ],
+    );
+    let (said, _) = done(dir.path(), &["predict", "case.toml", "--out", "given", "--set", "fatigue.lot=same"]);
     assert!(said.contains("same lot") && !said.contains("fatigue.lot"), "{said}");
-    let result = json(&dir.path().join("run/result.json"));
+    let result = json(dir.path().join("run/result.json"));
     let band = &result["band"];
     assert_eq!((&band["specimens"], &band["assumed_scatter"], &band["lot"]), (&1.into(), &true.into(), &"same".into()));
     let [low, middle, high] = ["cycles_p05", "cycles_p50", "cycles_p95"].map(|key| band[key].as_f64().unwrap());
@@ -83,11 +74,11 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
     let without = "fatigue.fitted=\"bare.toml\"";
     let record = fs::read_to_string(dir.path().join("fit/fitted.toml")).unwrap();
     fs::write(dir.path().join("bare.toml"), record.split("[population]").next().unwrap()).unwrap();
-    let stdout =
+    let (stdout, _) =
         done(dir.path(), &["predict", "case.toml", "--out", "bare", "--set", without, "--inspect-from", "20", "--factor", "2"]);
     assert!(stdout.contains("Scatter band   not available: fitted law without [population]"), "{stdout}");
     assert!(stdout.contains("(remaining life / 2; no scatter band)"), "{stdout}");
-    let result = json(&dir.path().join("bare/result.json"));
+    let result = json(dir.path().join("bare/result.json"));
     assert!(result["band"].is_null() && result["inspection"]["has_band"] == false);
     assert!(!fs::read_to_string(dir.path().join("bare/a_n.csv")).unwrap().contains("cycles_p05"));
     fs::write(dir.path().join("bare.toml"), record.replacen("pivot = ", "pivot = -", 1)).unwrap();
@@ -102,10 +93,11 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
 fn readings_of_the_plate_narrow_what_it_has_left() {
     let dir = folder();
     write_readings(dir.path(), "own.csv", 25.0, 0.9);
-    let stdout = done(dir.path(), &["predict", "case.toml", "--out", "run", "--measured", "own.csv", "--inspect-from", "30"]);
+    let (stdout, _) =
+        done(dir.path(), &["predict", "case.toml", "--out", "run", "--measured", "own.csv", "--inspect-from", "30"]);
     println!("{stdout}");
     assert!(stdout.contains("  This plate     last reading 25.0 mm at "), "{stdout}");
-    let result = json(&dir.path().join("run/result.json"));
+    let result = json(dir.path().join("run/result.json"));
     let (own, lot) = (&result["measured"], &result["measured"]["of_lot"]);
     let keys = ["remaining_cycles_p05", "remaining_cycles_p50", "remaining_cycles_p95"];
     let [own, lot] = [own, lot].map(|object| keys.map(|key| object[key].as_f64().unwrap()));

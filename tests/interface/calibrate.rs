@@ -9,29 +9,19 @@ use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::daily::panel_without_law;
+use crate::support::desk::{done, json};
+use crate::support::rows::assert_says;
 
 /// Makes the calibration coarse: a longer first crack keeps six points in front of the load line of a 3 mm lattice.
 const COARSE: [&str; 6] =
     ["--set", "model.spacing_mm=3", "--set", "specimen.crack_length_mm=18", "--set", "measured.from_crack_length_mm=18"];
 
 /// The same panel from 20 to 40 mm, which the fit covers.
-const PANEL: &str = r#"
-[specimen]
-kind = "middle_tension"
-width_mm = 152.4
-length_mm = 300.0
-thickness_mm = 2.54
-crack_length_mm = 20.0
-[material]
-name = "al2024-t3"
-[loading]
-stress_range_mpa = 48.28
-stress_ratio = 0.2
-[model]
-spacing_mm = 3.0
-[stop]
-crack_length_mm = 40.0
-"#;
+fn panel() -> String {
+    let plate = panel_without_law().replace("crack_length_mm = 9.0", "crack_length_mm = 20.0");
+    plate.replace("method = \"handbook\"", "spacing_mm = 3.0") + "[stop]\ncrack_length_mm = 40.0\n"
+}
 
 /// A copy of the committed calibration, its measured table and a case to predict.
 fn copy_of_the_calibration() -> TempDir {
@@ -41,12 +31,8 @@ fn copy_of_the_calibration() -> TempDir {
     for file in ["case.toml", "measured/virkler_median.csv"] {
         fs::copy(from.join(file), dir.path().join(file)).unwrap();
     }
-    fs::write(dir.path().join("panel.toml"), PANEL).unwrap();
+    fs::write(dir.path().join("panel.toml"), panel()).unwrap();
     dir
-}
-
-fn json(path: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
 #[test]
@@ -54,12 +40,8 @@ fn a_calibration_with_a_prediction_and_its_export() {
     let dir = copy_of_the_calibration();
     let fit = dir.path().join("out/fit");
     let arguments = [&["calibrate", "case.toml", "--out", "out/fit", "-v", "--predict", "panel.toml"][..], &COARSE].concat();
-    let output = perilife(dir.path(), &arguments);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
-    for words in ["al2024-t3, R = 0.2: da/dN = ", "(fitted to median)", ", p = ", "panel: life", "crack length limit"] {
-        assert!(stdout.contains(words), "{words} in {stdout}");
-    }
+    let (stdout, _) = done(dir.path(), &arguments);
+    assert_says(&stdout, &["al2024-t3, R = 0.2: da/dN = ", "(fitted to median)", ", p = ", "panel: life", "crack length limit"]);
 
     // The files that are promised, and no temporary ones.
     for file in ["fitted.toml", "fit.json", "fit_curves.csv", "rates.csv", "fit.svg", "da_dn.svg", "readings.csv", ".perilife"] {
@@ -74,23 +56,23 @@ fn a_calibration_with_a_prediction_and_its_export() {
 
     // The record reads back and says what fit.json says; a case that names it reads it.
     let record: FittedRecord = toml::from_str(&fs::read_to_string(fit.join("fitted.toml")).unwrap()).unwrap();
-    let report = json(&fit.join("fit.json"));
+    let report = json(fit.join("fit.json"));
     // The JSON reader may miss the last bit of a number.
     for (key, value) in [("a", record.a), ("p", record.p)] {
         assert!((report[key].as_f64().unwrap() / value - 1.0).abs() < 1e-15, "{key}: {report}");
     }
     assert!((1.5..8.0).contains(&record.p) && (1.0..5.0).contains(&record.paris_m), "{record:?}");
     assert!(report["rms_life_error"].as_f64().unwrap() < 0.2, "{report}");
-    let with_record = format!("{PANEL}[fatigue]\nfitted = \"out/fit/fitted.toml\"\n");
+    let with_record = panel() + "[fatigue]\nfitted = \"out/fit/fitted.toml\"\n";
     fs::write(dir.path().join("again.toml"), with_record).unwrap();
-    assert_eq!(perilife(dir.path(), &["check", "again.toml"]).status.code(), Some(0));
+    done(dir.path(), &["check", "again.toml"]);
 
     // The predicted curve, resampled: as many rows as asked for, ending at the life, neither column ever falls.
     let arguments = ["export", "out/fit/panel", "--points", "200", "--out", "a_n.csv"];
-    assert_eq!(perilife(dir.path(), &arguments).status.code(), Some(0));
+    done(dir.path(), &arguments);
     let rows = read_a_n(&dir.path().join("a_n.csv")).unwrap();
     assert_eq!(rows.len(), 200);
-    assert_eq!(Some(rows[199].cycles), json(&fit.join("panel/result.json"))["life_cycles"].as_f64());
+    assert_eq!(Some(rows[199].cycles), json(fit.join("panel/result.json"))["life_cycles"].as_f64());
     assert!(rows.windows(2).all(|w| w[0].cycles < w[1].cycles && w[0].crack_length_mm <= w[1].crack_length_mm));
     assert!((rows[0].crack_length_mm - 20.0).abs() < 1e-9 && (rows[199].crack_length_mm - 40.0).abs() < 1e-9);
 
@@ -100,9 +82,8 @@ fn a_calibration_with_a_prediction_and_its_export() {
     assert_eq!(rates.lines().count() - 1, intervals, "{rates}");
     let of_rates = "[measured]\nrates = [\"out/fit/rates.csv\"]\n[fit]\nlaw = \"paris\"\n";
     fs::write(dir.path().join("of_rates.toml"), of_rates).unwrap();
-    let output = perilife(dir.path(), &["calibrate", "of_rates.toml", "--out", "out/rates", "--json"]);
-    assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
-    let [by_rates, by_lives] = ["out/rates", "out/fit"].map(|folder| json(&dir.path().join(folder).join("fit.json")));
+    done(dir.path(), &["calibrate", "of_rates.toml", "--out", "out/rates", "--json"]);
+    let [by_rates, by_lives] = ["out/rates", "out/fit"].map(|folder| json(dir.path().join(folder).join("fit.json")));
     let of = |value: &serde_json::Value| value.as_f64().unwrap();
     assert!((of(&by_rates["constants"]["paris_m"]) / of(&by_lives["paris_m"]) - 1.0).abs() < 0.1, "{by_rates}");
     assert!(dir.path().join("out/rates/rates.csv").is_file());
@@ -122,9 +103,9 @@ fn a_calibration_with_a_prediction_and_its_export() {
 #[test]
 fn a_slip_in_a_case_to_predict_costs_no_calibration() {
     let dir = copy_of_the_calibration();
-    fs::write(dir.path().join("slip.toml"), PANEL.replace("width_mm", "widht_mm")).unwrap();
+    fs::write(dir.path().join("slip.toml"), panel().replace("width_mm", "widht_mm")).unwrap();
     let arguments = ["calibrate", "case.toml", "--out", "out", "--predict", "panel.toml", "slip.toml"];
-    assert_refused(&perilife(dir.path(), &arguments), 2, &["slip.toml:4", "specimen.widht_mm"]);
+    assert_refused(&perilife(dir.path(), &arguments), 2, &["slip.toml:3", "specimen.widht_mm"]);
     let arguments = ["calibrate", "case.toml", "--out", "out", "--predict", "panel.toml", "panel.toml"];
     assert_refused(&perilife(dir.path(), &arguments), 2, &["--predict", "panel.toml", "same case name"]);
     assert!(!dir.path().join("out").exists());
@@ -135,9 +116,7 @@ fn rates_of_the_committed_table() {
     let dir = copy_of_the_calibration();
     let csv = "measured/virkler_median.csv";
     for method in ["secant", "polynomial7"] {
-        let output = perilife(dir.path(), &["rates", csv, "--method", method, "--specimen", "case.toml"]);
-        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
-        let (stdout, _) = texts(&output);
+        let (stdout, _) = done(dir.path(), &["rates", csv, "--method", method, "--specimen", "case.toml"]);
         let readings = fs::read_to_string(dir.path().join(csv)).unwrap().lines().filter(|line| line.contains(',')).count() - 1;
         let lost = if method == "secant" { 1 } else { 6 };
         assert_eq!(stdout.lines().count(), 1 + readings - lost, "{method}");
@@ -150,13 +129,11 @@ fn rates_of_the_committed_table() {
     assert!((2.6..3.2).contains(&m), "{m}");
 }
 
-/// The example with three stress ratios in one table, whose readings were made of a law: it is found within three of its errors.
 #[test]
 fn the_law_behind_three_stress_ratios_is_found() {
     let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration/compact-three-ratios/case.toml");
     let dir = tempdir().unwrap();
-    let output = perilife(dir.path(), &["calibrate", case.to_str().unwrap(), "--out", "fit"]);
-    assert_eq!(output.status.code(), Some(0), "{:?}", texts(&output));
+    done(dir.path(), &["calibrate", case.to_str().unwrap(), "--out", "fit"]);
     let fit: toml::Table = toml::from_str(&fs::read_to_string(dir.path().join("fit/fitted.toml")).unwrap()).unwrap();
     for (key, wanted) in [("paris_c_mm_per_cycle", 6.0e-8), ("paris_m", 3.1), ("walker_gamma", 0.65)] {
         let of = |section: &str| fit[section][key].as_float().unwrap();
@@ -192,8 +169,7 @@ fn a_table_gets_its_calibration_file() {
         }
         let lines = lines.replace("kind = <...>", "kind = \"compact_tension\"").replace("name = <...>", "name = \"al2024-t3\"");
         fs::write(dir.path().join("lab.toml"), lines.replace("length_mm = <...>", "")).unwrap();
-        let output = perilife(dir.path(), &["check", "lab.toml"]);
-        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+        done(dir.path(), &["check", "lab.toml"]);
     }
     // What the table does not say stays open.
     fs::write(dir.path().join("lab.csv"), "cycles,crack_length_mm\n0,9\n1000,9.5\n2000,10\n3000,10.6\n4000,11.3\n").unwrap();

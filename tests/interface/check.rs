@@ -7,18 +7,15 @@ use std::process::{Command, Stdio};
 use tempfile::tempdir;
 
 use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
+use crate::support::desk::{desk, done};
+use crate::support::rows::assert_says;
 
 #[test]
 fn a_case_is_told_in_words_and_in_json() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
-    let output = perilife(dir.path(), &["check", "small.toml", "-v", "--set", "model.spacing_mm=1.9", "--picture", "p.svg"]);
-    assert_eq!(output.status.code(), Some(0));
-    let (stdout, _) = texts(&output);
+    let dir = desk(&[("small.toml", &SMALL_CASE)]);
+    let (stdout, _) = done(dir.path(), &["check", "small.toml", "-v", "--set", "model.spacing_mm=1.9", "--picture", "p.svg"]);
     // 60 mm / 1.9 mm = 31.6: 32 columns of 1.875 mm, 64 rows.
-    for words in ["2048 and", "spacing 1.875 mm (1.9 asked for)", "crack length 20 mm", "small.toml: valid input\n"] {
-        assert!(stdout.contains(words), "{words} in {stdout}");
-    }
+    assert_says(&stdout, &["2048 and", "spacing 1.875 mm (1.9 asked for)", "crack length 20 mm", "small.toml: valid input\n"]);
     assert!(fs::read_to_string(dir.path().join("p.svg")).unwrap().starts_with("<svg"));
     let (stdout, _) = texts(&perilife(dir.path(), &["check", "small.toml", "--json"]));
     let object: serde_json::Value = serde_json::from_str(&stdout).unwrap();
@@ -37,9 +34,7 @@ fn a_tip_held_by_a_no_fail_zone_is_told() {
     let text =
         text.replace("crack_length_mm = 20.0", "crack_length_mm = 60.0") + "[supports]\nbottom = { fix = [\"x\", \"y\"] }\n";
     fs::write(dir.path().join("held.toml"), text).unwrap();
-    let output = perilife(dir.path(), &["check", "held.toml"]);
-    let (_, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let (_, stderr) = done(dir.path(), &["check", "held.toml"]);
     for tip in ["(-15, -57)", "(5, -57)"] {
         assert!(
             stderr.contains(&format!("the crack tip at {tip} mm is inside the no-failure zone of a load or support")),
@@ -74,8 +69,7 @@ fn mechanics_that_show_before_a_run_are_wrong_input() {
 /// What a scene at the rim of the model is told, and the codes of runs in which nothing happens.
 #[test]
 fn coarse_models_are_told_their_error() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    let dir = desk(&[("small.toml", &SMALL_CASE)]);
     let check = |set: &str| perilife(dir.path(), &["check", "small.toml", "--set", "fatigue.driver=bond_strain", "--set", set]);
     for (set, words) in [
         ("model.horizon_ratio=1.5", "is too small: with the same A the life is about 40 % too short"),
@@ -90,9 +84,7 @@ fn coarse_models_are_told_their_error() {
     assert_refused(&check("specimen.crack_length_mm=1"), 2, &["model.spacing_mm", "larger than the crack"]);
     let arguments =
         ["predict", "small.toml", "--out", "run", "--json", "--set", "fatigue.a=1e-30", "--set", "stop.cycles_max=1e6"];
-    let output = perilife(dir.path(), &arguments);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let (stdout, _) = done(dir.path(), &arguments);
     let result: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     assert_eq!((&result["stop_reason"], &result["life_cycles"]), (&"run_out".into(), &1e6.into()));
     assert_eq!(result["crack_length_final_mm"], 12.0);
@@ -145,9 +137,7 @@ fatigue = { paris_c_mm_per_cycle = 1e-7, paris_m = 3.0 }
 
 #[test]
 fn what_does_not_fit_into_memory_is_refused_before_it_is_laid_out() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("arms.toml"), THIN_ARMS).unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    let dir = desk(&[("arms.toml", &THIN_ARMS), ("small.toml", &SMALL_CASE)]);
     let within = |arguments: &str| {
         let call = format!("ulimit -v 2000000; exec '{}' {arguments}", env!("CARGO_BIN_EXE_perilife"));
         Command::new("sh").current_dir(dir.path()).args(["-c", &call]).output().unwrap()
@@ -167,8 +157,7 @@ fn what_does_not_fit_into_memory_is_refused_before_it_is_laid_out() {
 /// Bonds are counted, not drawn, where there are many.
 #[test]
 fn a_check_of_many_bonds_is_quick() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    let dir = desk(&[("small.toml", &SMALL_CASE)]);
     let started = std::time::Instant::now();
     let sets = ["model.spacing_mm=0.135", "model.horizon_ratio=12", "model.surface_correction=volume_and_surface"];
     let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", *set]).collect();

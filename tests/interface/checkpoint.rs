@@ -1,4 +1,4 @@
-//! A run that is killed goes on when it is called again, and gives the results of one that nobody killed.
+//! Killed runs that go on, and runs whose time is over.
 
 use std::fs;
 use std::path::Path;
@@ -9,30 +9,13 @@ use assert_cmd::cargo::cargo_bin;
 use tempfile::tempdir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::daily::{PANEL, SCENE, names, write_inputs};
+use crate::support::desk::desk;
+
+// A run that is killed goes on when it is called again, and gives the results of one that nobody killed.
 
 /// A slant crack that takes seconds, its window moving several times.
-const CASE: &str = r#"
-[specimen]
-kind = "plate"
-width_mm = 70.0
-length_mm = 100.0
-thickness_mm = 2.0
-cracks = [{ from_mm = [-9.0, -5.0], to_mm = [9.0, 5.0] }]
-[material]
-youngs_modulus_gpa = 72.0
-poisson_ratio = 0.3
-plane = "stress"
-[loading]
-stress_max_mpa = 70.0
-stress_ratio = 0.1
-[model]
-spacing_mm = 0.6
-[fatigue]
-a = 6450.0
-p = 2.86
-horizon_mm = 3.015
-driver = "bond_strain"
-"#;
+const CASE: &str = include_str!("../reference/cases/checkpoint.toml");
 
 const KEEP: [&str; 4] = ["--checkpoint", "run.ckpt", "--checkpoint-every", "0"];
 
@@ -158,8 +141,7 @@ fn a_killed_scene_goes_on_to_the_same_files() {
 #[test]
 fn places_and_times_for_a_checkpoint_are_checked_first() {
     for (command, input) in [("predict", CASE), ("fracture", crate::interface::fracture::SCENE)] {
-        let dir = tempdir().unwrap();
-        fs::write(dir.path().join("case.toml"), input).unwrap();
+        let dir = desk(&[("case.toml", &input)]);
         fs::create_dir(dir.path().join("folder")).unwrap();
         let call = |more: &[&str]| perilife(dir.path(), &[&[command, "case.toml", "--out", "run"], more].concat());
         assert_refused(&call(&["--checkpoint", "folder"]), 4, &["folder: cannot read"]);
@@ -172,4 +154,50 @@ fn places_and_times_for_a_checkpoint_are_checked_first() {
         assert_eq!(call(&["--checkpoint-every", "1"]).status.code(), Some(2), "{command}");
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2, "{command}: nothing new stands there");
     }
+}
+
+// `--time-limit` counts from the first point of the plate on.
+
+#[test]
+fn a_run_ends_when_its_time_is_over() {
+    let dir = tempdir().unwrap();
+    let here = dir.path();
+    write_inputs(here);
+    let (plate, _) = PANEL.split_once("[model]").unwrap();
+    let law = "[fatigue]\nparis_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874\n[stop]\ncrack_length_mm = 49.8\n";
+    fs::write(here.join("large.toml"), format!("{plate}[model]\nspacing_mm = 0.11\n{law}")).unwrap();
+    let motion = SCENE.replace("traction", "velocity").replace("stress_mpa = 10.0", "velocity_mm_s = 1000.0\nduration_s = 1e-2");
+    fs::write(here.join("long.toml"), motion.replace("[model]", "density_kg_m3 = 8000.0\n[model]")).unwrap();
+    let before = names(here);
+    // Nearly four million points: it ends while the plate is being built. A motion ends between two steps.
+    for (command, input, limit) in [("predict", "large.toml", "0.5"), ("fracture", "long.toml", "1")] {
+        let begun = Instant::now();
+        let output = perilife(here, &[command, input, "--out", "out", "-q", "--time-limit", limit]);
+        let words = format!("stopped at the time limit of {limit} s; increase --time-limit, or use --checkpoint FILE");
+        assert_refused(&output, 3, &[&words]);
+        assert!(begun.elapsed() < Duration::from_secs(30), "{command}: {:?}", begun.elapsed());
+        assert_eq!(names(here), before);
+    }
+    // With a checkpoint the same command goes on, as often as it takes, to the same histories.
+    let keep = ["--checkpoint", "run.ckpt", "--checkpoint-every", "0"];
+    let shorter = ["--set", "loading.duration_s=1e-4"];
+    let whole = perilife(here, &[&["fracture", "long.toml", "--out", "whole", "-q"], &shorter[..]].concat());
+    assert!(whole.status.success(), "{}", texts(&whole).1);
+    let mut calls = 0;
+    loop {
+        let output = perilife(
+            here,
+            &[&["fracture", "long.toml", "--out", "out", "-q", "--time-limit", "0.4"], &keep[..], &shorter].concat(),
+        );
+        calls += 1;
+        if output.status.success() {
+            break;
+        }
+        let stderr = texts(&output).1;
+        assert!(output.status.code() == Some(3) && stderr.contains("the same command "), "{stderr}");
+        assert!(calls < 200, "it does not get on");
+    }
+    println!("{calls} calls");
+    let [whole, out] = ["whole", "out"].map(|out| fs::read(here.join(out).join("history.csv")).unwrap());
+    assert!(whole == out && !here.join("run.ckpt").exists());
 }

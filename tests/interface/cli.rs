@@ -9,6 +9,9 @@ use clap::CommandFactory;
 use perilife::commands::CommandLine;
 use tempfile::tempdir;
 
+use crate::support::desk::{desk, done, json};
+use crate::support::rows::assert_says;
+
 /// Runs the program in `folder`; stdout and stderr are no terminals.
 pub fn perilife(folder: &Path, arguments: &[&str]) -> Output {
     cargo_bin_cmd!("perilife").current_dir(folder).env_remove("RUST_LOG").args(arguments).output().unwrap()
@@ -20,7 +23,7 @@ pub fn texts(output: &Output) -> (String, String) {
 }
 
 /// The process ended with `code` and, warnings apart, one message on stderr that holds all `words`, without a trace of a panic.
-pub fn assert_refused(output: &Output, code: i32, words: &[&str]) {
+pub fn assert_refused(output: &Output, code: i32, words: &[impl AsRef<str>]) {
     let (stdout, stderr) = texts(output);
     assert_eq!(output.status.code(), Some(code), "{stderr}");
     // With --json the error is an object.
@@ -28,7 +31,7 @@ pub fn assert_refused(output: &Output, code: i32, words: &[&str]) {
     assert!(stdout.is_empty() || object(&stdout), "{stdout}");
     let first = stderr.lines().find(|line| !line.starts_with("warning: "));
     assert!(first.is_some_and(|line| line.starts_with("error: ")) && !stderr.contains("panicked"), "{stderr}");
-    words.iter().for_each(|word| assert!(stderr.contains(word), "{word} in {stderr}"));
+    assert_says(&stderr, words);
 }
 
 fn subcommands() -> Vec<String> {
@@ -51,9 +54,8 @@ fn every_command_explains_itself() {
     }
     for name in subcommands() {
         assert!(help.contains(&format!("\n  {name} ")), "{name} in {help}");
-        let output = perilife(here, &[&name, "--help"]);
-        assert_eq!(output.status.code(), Some(0));
-        assert!(texts(&output).0.contains(&format!("Usage: perilife {name}")));
+        let (stdout, _) = done(here, &[&name, "--help"]);
+        assert!(stdout.contains(&format!("Usage: perilife {name}")));
     }
 }
 
@@ -85,48 +87,19 @@ fn missing_files_end_with_four_and_leave_nothing() {
 #[test]
 fn list_names_every_key() {
     let (stdout, _) = texts(&perilife(Path::new("."), &["list"]));
-    for word in ["specimen.kind", "middle_tension", "model.bond_law", "two_parameter", "fatigue.ageing"] {
-        assert!(stdout.contains(word), "{word}");
-    }
+    assert_says(&stdout, &["specimen.kind", "middle_tension", "model.bond_law", "two_parameter", "fatigue.ageing"]);
 }
 
 /// A case coarse and short enough to run in a second.
-pub const SMALL_CASE: &str = r#"
-[specimen]
-kind = "middle_tension"
-width_mm = 60.0
-length_mm = 120.0
-thickness_mm = 2.0
-crack_length_mm = 12.0
-[material]
-youngs_modulus_gpa = 72.0
-poisson_ratio = 0.3
-plane = "stress"
-[loading]
-kind = "constant_amplitude"
-stress_max_mpa = 50.0
-stress_ratio = 0.1
-[model]
-spacing_mm = 2.0
-[fatigue]
-a = 1e5
-p = 3.0
-horizon_mm = 6.03
-[stop]
-crack_length_mm = 20.0
-cycles_max = 1e12
-"#;
+pub const SMALL_CASE: &str = include_str!("../reference/cases/small.toml");
 
 #[test]
 fn a_prediction_writes_what_it_promises() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
-    let output = perilife(dir.path(), &["predict", "small.toml", "--out", "out/run", "--json"]);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let dir = desk(&[("small.toml", &SMALL_CASE)]);
+    let (stdout, _) = done(dir.path(), &["predict", "small.toml", "--out", "out/run", "--json"]);
     let printed: serde_json::Value = serde_json::from_str(&stdout).expect("one JSON object and nothing else");
     let run = dir.path().join("out/run");
-    let written: serde_json::Value = serde_json::from_str(&fs::read_to_string(run.join("result.json")).unwrap()).unwrap();
+    let written = json(run.join("result.json"));
     assert_eq!(printed, written);
     assert_eq!(written["stop_reason"], "crack_length_reached");
     for file in ["a_n.csv", "crack_path.csv", "a_n.svg", "da_dn.svg", "plate.svg", "k.svg", "factors.csv", "beta.txt"] {
@@ -144,7 +117,7 @@ fn a_prediction_writes_what_it_promises() {
     let (stdout, _) = texts(&perilife(dir.path(), &["predict", "small.toml", "--out", "out/run", "--quiet", "--paraview"]));
     assert!(stdout.starts_with("small: life ") && stdout.lines().count() == 1, "{stdout}");
     // Without --out the folder has the name of the case.
-    assert_eq!(perilife(dir.path(), &["predict", "small.toml", "-q"]).status.code(), Some(0));
+    done(dir.path(), &["predict", "small.toml", "-q"]);
     assert!(dir.path().join("small/result.json").is_file());
     let again = fs::read_to_string(run.join("case.toml")).unwrap();
     assert!(run.join("paraview/run.pvd").is_file() && again.contains("[output]\nparaview = true"), "{again}");
@@ -158,8 +131,7 @@ fn a_prediction_writes_what_it_promises() {
 
 #[test]
 fn a_folder_of_somebody_else_is_refused() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    let dir = desk(&[("small.toml", &SMALL_CASE)]);
     fs::create_dir(dir.path().join("thesis")).unwrap();
     fs::write(dir.path().join("thesis/chapter"), "years of work").unwrap();
     let output = perilife(dir.path(), &["predict", "small.toml", "--out", "thesis"]);
@@ -174,9 +146,7 @@ fn a_folder_of_somebody_else_is_refused() {
 #[test]
 #[cfg(target_os = "linux")]
 fn unreadable_and_unwritable_places() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
-    fs::write(dir.path().join("m.csv"), "cycles,crack_length_mm\n0,9\n1,10\n2,11\n3,12\n4,13\n").unwrap();
+    let dir = desk(&[("small.toml", &SMALL_CASE), ("m.csv", &"cycles,crack_length_mm\n0,9\n1,10\n2,11\n3,12\n4,13\n")]);
     let calls: [(&[&str], i32, &[&str]); 5] = [
         (&["predict", "small.toml", "--out", "/proc/run"], 4, &["/proc/run"]),
         (&["predict", "small.toml", "--out", "/dev/full"], 2, &["--out = /dev/full", "is a file", "name of a folder"]),

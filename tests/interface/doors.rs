@@ -12,6 +12,7 @@ use toml::Table;
 use crate::interface::cli::{perilife, texts};
 use crate::interface::service::QUICK;
 use crate::support::daily::{PANEL, READINGS};
+use crate::support::desk::done;
 use crate::support::server::{Server, in_folder};
 use crate::support::slurm::Slurm;
 
@@ -54,11 +55,6 @@ pub fn written(examples: &[Example]) -> TempDir {
         example.files.iter().for_each(|(name, content)| fs::write(dir.path().join(name), content).unwrap());
     }
     dir
-}
-
-pub fn done(folder: &Path, arguments: &[&str]) {
-    let output = perilife(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", texts(&output).1);
 }
 
 /// What has to be the same: the tables, and all figures but those of time, place and memory.

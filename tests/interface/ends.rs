@@ -6,6 +6,7 @@ use serde_json::Value;
 use tempfile::tempdir;
 
 use crate::interface::cli::{perilife, texts};
+use crate::support::desk::desk;
 
 const PANEL: &str =
     "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 20\n";
@@ -107,7 +108,6 @@ fn how_lives_end() {
     }
 }
 
-/// `check` says it before any run.
 #[test]
 fn check_says_that_the_first_load_breaks_the_plate() {
     let dir = tempdir().unwrap();
@@ -126,8 +126,7 @@ const LAW: &str = "[fatigue]\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3\n";
 
 /// Exit code, `result.json` and what is said of a case with these lines.
 fn predicted(text: &str, more: &[&str]) -> (Option<i32>, Value, String) {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("case.toml"), text).unwrap();
+    let dir = desk(&[("case.toml", &text)]);
     let output = perilife(dir.path(), &[&["predict", "case.toml", "--out", "run", "-v"], more].concat());
     let (stdout, stderr) = texts(&output);
     // A run that is refused before anything is written has none.

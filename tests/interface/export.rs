@@ -6,6 +6,7 @@ use std::path::Path;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::desk::done;
 use crate::support::{made_up_case, made_up_run};
 use perilife_results::curve::{self, Row, cycles_over_length};
 
@@ -27,8 +28,7 @@ fn an_export_keeps_both_ends_and_lies_on_the_curve() {
     let dir = fabricated();
     let run = rows(dir.path(), "run/a_n.csv");
     for count in [2, 3, 200, 5000] {
-        let output = perilife(dir.path(), &["export", "run", "--points", &count.to_string(), "--out", "e.csv"]);
-        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+        done(dir.path(), &["export", "run", "--points", &count.to_string(), "--out", "e.csv"]);
         let text = fs::read_to_string(dir.path().join("e.csv")).unwrap();
         assert_eq!(text.lines().next(), Some("cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle"));
         let export = rows(dir.path(), "e.csv");
@@ -48,7 +48,7 @@ fn an_export_keeps_both_ends_and_lies_on_the_curve() {
 fn an_export_can_step_in_cycles() {
     let dir = fabricated();
     let last = rows(dir.path(), "run/a_n.csv").pop().unwrap();
-    assert_eq!(perilife(dir.path(), &["export", "run", "--every-cycles", "100000", "--out", "e.csv"]).status.code(), Some(0));
+    done(dir.path(), &["export", "run", "--every-cycles", "100000", "--out", "e.csv"]);
     let export = rows(dir.path(), "e.csv");
     assert_eq!(export.len(), 2 + (last.cycles / 1e5).floor() as usize);
     assert_eq!(export[3].cycles, 3e5);
@@ -65,7 +65,7 @@ fn rows_at_the_same_cycles_and_unknown_values_are_taken_as_they_are() {
     let dir = tempdir().unwrap();
     let table = "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n0,9,,\n0,10,8,1e-5\n50,11,9,2e-5\n50,12,,\n100,14,10,3e-5\n";
     fs::write(dir.path().join("a_n.csv"), table).unwrap();
-    assert_eq!(perilife(dir.path(), &["export", ".", "--points", "5", "--out", "e.csv"]).status.code(), Some(0));
+    done(dir.path(), &["export", ".", "--points", "5", "--out", "e.csv"]);
     let export = rows(dir.path(), "e.csv");
     let lengths: Vec<f64> = export.iter().map(|row| row.crack_length_mm).collect();
     assert_eq!(lengths, [9.0, 10.5, 12.0, 13.0, 14.0]);
@@ -73,7 +73,7 @@ fn rows_at_the_same_cycles_and_unknown_values_are_taken_as_they_are() {
     assert_eq!(unknown, [true, false, true, true, false]);
     // A run whose life is zero has one moment only.
     fs::write(dir.path().join("a_n.csv"), table.lines().take(2).collect::<Vec<_>>().join("\n")).unwrap();
-    assert_eq!(perilife(dir.path(), &["export", ".", "--out", "e.csv"]).status.code(), Some(0));
+    done(dir.path(), &["export", ".", "--out", "e.csv"]);
     assert_eq!(rows(dir.path(), "e.csv").len(), 1);
 }
 

@@ -1,44 +1,36 @@
 //! Fleets, detection and sensitivities as a user asks for them.
 
 use std::fs;
-use std::path::Path;
 
-use serde_json::Value;
-use tempfile::tempdir;
-
-use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife};
+use crate::support::desk::{desk, done, json};
+use crate::support::rows::assert_says;
 
 const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300.0\nthickness_mm = 2.54\ncrack_length_mm = 4.0\n\
     [material]\nname = \"al2024-t3\"\ntoughness_mpa_sqrt_m = 60.0\n[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n\
     [model]\nmethod = \"handbook\"\n[fatigue]\nparis_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874\n";
 const FLEET: &str = "[fleet]\ninitial_length_mm = { median = 9.0, standard_deviation_ln = 0.25 }\nload_scatter = 0.02\n";
 
-fn json(path: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
-}
-
 #[test]
 fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("case.toml"), format!("{PANEL}{FLEET}")).unwrap();
+    let dir = desk(&[("case.toml", &format!("{PANEL}{FLEET}"))]);
     let arguments = "predict case.toml --out run --fleet 500 --seed 7 --inspect-from 10 --pod 12,25 --sensitivities --residual-strength \
                      --set stop.required_strength_mpa=100";
-    let output = perilife(dir.path(), &arguments.split_whitespace().collect::<Vec<_>>());
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
-    for words in [
-        "case: life 5 % ",
-        "  Nominal run    life ",
-        " cycles (500 plates)\n",
-        "Fleet          from a = 10.000 mm to the end: 5 % ",
-        "; inspected after ",
-        "POD            3 inspections; all miss the crack: 3.07e-2 (independence assumed; a50 12 mm, a90 25 mm)",
-        "Sensitivities  load -5 % +1",
-    ] {
-        assert!(stdout.contains(words), "{words} in {stdout}");
-    }
+    let (stdout, _) = done(dir.path(), &arguments.split_whitespace().collect::<Vec<_>>());
+    assert_says(
+        &stdout,
+        &[
+            "case: life 5 % ",
+            "  Nominal run    life ",
+            " cycles (500 plates)\n",
+            "Fleet          from a = 10.000 mm to the end: 5 % ",
+            "; inspected after ",
+            "POD            3 inspections; all miss the crack: 3.07e-2 (independence assumed; a50 12 mm, a90 25 mm)",
+            "Sensitivities  load -5 % +1",
+        ],
+    );
     let run = dir.path().join("run");
-    let (result, table) = (json(&run.join("result.json")), fs::read_to_string(run.join("fleet.csv")).unwrap());
+    let (result, table) = (json(run.join("result.json")), fs::read_to_string(run.join("fleet.csv")).unwrap());
     assert_eq!((table.lines().count(), &result["fleet"]["plates"]), (501, &500.into()));
     let quantile = |name: &str| result["fleet"]["life_cycles"][name].as_f64().unwrap();
     assert!(quantile("p05") < quantile("p50") && quantile("p50") < quantile("p95"), "{}", result["fleet"]);
@@ -73,13 +65,10 @@ fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
     );
     let again = fs::read_to_string(dir.path().join("again/fleet.csv")).unwrap();
     // Without a POD the fleet has an interval all the same: that of its plate at 5 %.
-    let output = perilife(
-        dir.path(),
-        &["predict", "case.toml", "--out", "plain", "--fleet", "500", "--seed", "7", "--inspect-from", "10"],
-    );
-    let plain = json(&dir.path().join("plain/result.json"))["fleet"]["inspections"].clone();
+    let (stdout, _) =
+        done(dir.path(), &["predict", "case.toml", "--out", "plain", "--fleet", "500", "--seed", "7", "--inspect-from", "10"]);
+    let plain = json(dir.path().join("plain/result.json"))["fleet"]["inspections"].clone();
     let every = plain["detectable_to_critical_cycles"]["p05"].as_f64().unwrap() / 3.0;
-    let stdout = texts(&output).0;
     let line = stdout.lines().find_map(|line| line.strip_prefix("  Inspect every  ")).unwrap();
     let (cycles, basis) = line.split_once(" cycles ").unwrap();
     assert_eq!(
@@ -93,8 +82,7 @@ fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
 
 #[test]
 fn a_fleet_without_scatter_and_wrong_keys_are_refused() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("case.toml"), PANEL).unwrap();
+    let dir = desk(&[("case.toml", &PANEL)]);
     let cases: [(&[&str], &[&str]); 8] = [
         (&["--fleet", "100"], &["fleet", "has no scatter", "initial_length_mm"]),
         (&["--fleet", "0"], &["fleet.plates = 0", "100000"]),

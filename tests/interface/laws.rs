@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
 
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
-use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife};
+use crate::support::desk::{done, json};
+use crate::support::rows::assert_says;
 
 const SHEET: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 6\n\
                      [material]\nyoungs_modulus_gpa = 71\npoisson_ratio = 0.33\n[model]\nmethod = \"handbook\"\n";
@@ -15,17 +16,6 @@ const WALKER: &str = "[fatigue]\ngrowth_law = \"walker\"\nparis_c_mm_per_cycle =
 
 fn loading(ratio: f64) -> String {
     format!("[loading]\nstress_max_mpa = 90\nstress_ratio = {ratio}\n")
-}
-
-fn done(folder: &Path, arguments: &[&str]) -> (String, String) {
-    let output = perilife(folder, arguments);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {stderr}{stdout}");
-    (stdout, stderr)
-}
-
-fn json(path: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
 /// Readings of sheets of a known law of Walker at two stress ratios, `r1.csv` and `r5.csv`, with the cases they were tested by.
@@ -64,13 +54,14 @@ fn readings_at_two_ratios_become_rates_a_law_and_a_life() {
     // Another stress ratio between them.
     fs::write(here.join("panel.toml"), format!("{SHEET}{}[stop]\ncrack_length_mm = 30\n", loading(0.3))).unwrap();
     let (stdout, _) = done(here, &["calibrate", "laws.toml", "--out", "fit", "--predict", "panel.toml"]);
-    for words in ["walker law at R = 0.1, 0.5", "lowest AICc; ", "paris_c_mm_per_cycle", "  Rejected       ", "panel: life"] {
-        assert!(stdout.contains(words), "{words} in {stdout}");
-    }
+    assert_says(
+        &stdout,
+        &["walker law at R = 0.1, 0.5", "lowest AICc; ", "paris_c_mm_per_cycle", "  Rejected       ", "panel: life"],
+    );
     for file in ["fitted.toml", "fit.json", "fit_rates.csv", "da_dn.svg", "panel/a_n.csv"] {
         assert!(fs::metadata(here.join("fit").join(file)).unwrap().len() > 0, "{file}");
     }
-    let report = json(&here.join("fit/fit.json"));
+    let report = json(here.join("fit/fit.json"));
     assert_eq!(report["law"], "walker");
     for (key, truth, bound) in [("paris_m", 3.2, 0.01), ("walker_gamma", 0.6, 0.02), ("paris_c_mm_per_cycle", 2e-8, 0.02)] {
         let value = report["constants"][key].as_f64().unwrap();
@@ -80,7 +71,7 @@ fn readings_at_two_ratios_become_rates_a_law_and_a_life() {
     // The life is that of the law that made the readings.
     fs::write(here.join("truth.toml"), format!("{SHEET}{}{WALKER}[stop]\ncrack_length_mm = 30\n", loading(0.3))).unwrap();
     done(here, &["predict", "truth.toml", "--out", "truth"]);
-    let [fitted, truth] = ["fit/panel", "truth"].map(|run| json(&here.join(run).join("result.json")));
+    let [fitted, truth] = ["fit/panel", "truth"].map(|run| json(here.join(run).join("result.json")));
     let life = |result: &Value| result["life_cycles"].as_f64().unwrap();
     assert!((life(&fitted) / life(&truth) - 1.0).abs() < 0.01, "{} for {}", life(&fitted), life(&truth));
     assert!(fitted["life_share_extrapolated"].as_f64().unwrap() < 0.05);
@@ -101,7 +92,7 @@ fn readings_at_two_ratios_become_rates_a_law_and_a_life() {
     let case = format!("[measured]\nfiles = [\"all.csv\"]\n[fit]\nlaw = \"walker\"\n{SHEET}{}", loading(0.1));
     fs::write(here.join("direct.toml"), case).unwrap();
     done(here, &["calibrate", "direct.toml", "--out", "direct"]);
-    let gamma = json(&here.join("direct/fit.json"))["constants"]["walker_gamma"].as_f64().unwrap();
+    let gamma = json(here.join("direct/fit.json"))["constants"]["walker_gamma"].as_f64().unwrap();
     assert!((gamma - 0.6).abs() < 0.02, "{gamma}");
     done(here, &["check", "direct.toml"]);
     // A table of rates is read as readings too, as before.
@@ -172,7 +163,7 @@ fn rates_and_sweeps_tell_where_the_formula_does_not_hold() {
     let line = stderr.lines().find(|line| line.contains("of the life is outside the range of ASTM E647 compact"));
     let line = line.unwrap_or_else(|| panic!("{stderr}"));
     assert!(line.contains("and 1 more"), "{line}");
-    let figures = json(&here.join("out/sweep.json"));
+    let figures = json(here.join("out/sweep.json"));
     let told = figures["warnings"]
         .as_array()
         .unwrap()

@@ -7,6 +7,7 @@ use serde_json::Value;
 use tempfile::tempdir;
 
 use crate::interface::cli::{perilife, texts};
+use crate::support::desk::{done, json};
 use crate::support::shared::shared;
 
 /// A command in a folder of its own, and what is right.
@@ -118,23 +119,21 @@ fn tables_of_practice_give_the_right_figure_or_the_cause() {
             assert!(said.contains(words), "{folder} {arguments:?}: {words} in {said}");
         }
         for (file, place, right, slack) in *figures {
-            let object: Value = serde_json::from_str(&fs::read_to_string(own.path().join(file)).unwrap()).unwrap();
+            let object = json(own.path().join(file));
             let value = object.pointer(place).and_then(Value::as_f64).unwrap_or(f64::NAN);
             assert!((value / right - 1.0).abs() <= *slack, "{folder} {arguments:?}: {place} {value}, {right} is right");
         }
     }
 }
 
-/// The constants of all readings lie within those that the specimens have by themselves.
 #[test]
 fn constants_of_all_lie_within_those_of_the_specimens() {
     let Some(readme) = shared("field/practice4/README.md") else { return };
     for (folder, file) in [("sparse_readings", "ct.toml"), ("sparse_readings", "two.toml"), ("same_cycles", "twelve.toml")] {
         let own = tempdir().unwrap();
         let from = readme.parent().unwrap().join(folder);
-        let output = perilife(&from, &["calibrate", file, "--out", own.path().join("out").to_str().unwrap()]);
-        assert!(output.status.success(), "{}", texts(&output).1);
-        let fit: Value = serde_json::from_str(&fs::read_to_string(own.path().join(FIT)).unwrap()).unwrap();
+        done(&from, &["calibrate", file, "--out", own.path().join("out").to_str().unwrap()]);
+        let fit = json(own.path().join(FIT));
         let of = |specimen: &Value| specimen["p"].as_f64().unwrap();
         let all: Vec<f64> = fit["specimens"].as_array().unwrap().iter().map(of).collect();
         let (low, high) = (all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(0.0, f64::max));

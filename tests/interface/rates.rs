@@ -5,6 +5,7 @@ use std::fs;
 use tempfile::tempdir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::desk::{done, json};
 use crate::support::fatigue_test::{calibration, lengths, readings};
 
 /// Writes a test by `row` of cycles and length in mm, read every `step` mm, and its specimen.
@@ -49,9 +50,8 @@ fn columns_decimal_sign_and_units_are_options() {
     // The same words in a calibration file.
     let keys = "length_unit = \"mm\"\ndecimal = \",\"\ncolumns = { cycles = \"B\", length = \"C\" }";
     fs::write(dir.path().join("fit.toml"), calibration("lab.txt", keys)).unwrap();
-    let output = perilife(dir.path(), &["calibrate", "fit.toml", "--out", "out", "--json"]);
-    assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
-    let object: serde_json::Value = serde_json::from_str(&texts(&output).0).unwrap();
+    let (stdout, _) = done(dir.path(), &["calibrate", "fit.toml", "--out", "out", "--json"]);
+    let object: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     assert!((object["paris_m"].as_f64().unwrap() - 3.0).abs() < 0.01, "{object}");
     for key in ["law", "misfit_at_ends", "left_out"] {
         assert!(object.get(key).is_some(), "{key} in {object}");
@@ -92,9 +92,7 @@ fn loads_of_readings_are_used_and_missed_ones_told() {
 #[test]
 fn a_law_that_no_metal_has_is_marked() {
     let dir = folder(0.75, "megacycles;a (mm)", |_| 5.4, |n, a| format!("{n};{a}"));
-    let output = perilife(dir.path(), &["rates", "lab.txt", "--specimen", "ct.toml", "--json"]);
-    assert_eq!(output.status.code(), Some(0));
-    let (stdout, stderr) = texts(&output);
+    let (stdout, stderr) = done(dir.path(), &["rates", "lab.txt", "--specimen", "ct.toml", "--json"]);
     assert!(stderr.contains("specimen lab: the rate at ΔK = 10 MPa√m is"), "{stderr}");
     let object: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     assert!(object["specimens"][0]["warnings"].to_string().contains("the range of metals"), "{object}");
@@ -111,9 +109,7 @@ fn sides_that_differ_too_much_are_flagged() {
     // 0.25 B is 3 mm.
     for (apart, uneven) in [(2.9, false), (3.1, true)] {
         let dir = folder(0.75, "N;front (mm);back (mm)", |_| 5.4, |n, a| format!("{n};{};{}", a + apart / 2.0, a - apart / 2.0));
-        let output = perilife(dir.path(), &["rates", "lab.txt", "--specimen", "ct.toml"]);
-        let (stdout, stderr) = texts(&output);
-        assert_eq!(output.status.code(), Some(0), "{stderr}");
+        let (stdout, stderr) = done(dir.path(), &["rates", "lab.txt", "--specimen", "ct.toml"]);
         assert_eq!(stdout.contains("uneven_front"), uneven, "{apart}: {stdout}");
         assert_eq!(stderr.contains("exceed 3.00 mm (ASTM E647)"), uneven, "{apart}: {stderr}");
     }
@@ -128,9 +124,8 @@ fn names_like_formulas_are_text_in_tables() {
     let rows: String = names.iter().flat_map(|name| (0..8).map(move |i| row(name, i))).collect();
     fs::write(dir.path().join("lab.csv"), format!("specimen,cycles,crack_length_mm\n{rows}")).unwrap();
     let read = |file: &str, out: &[&str]| {
-        let output = perilife(dir.path(), &[&["rates", file, "--method", "secant"], out].concat());
-        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
-        texts(&output).0
+        let (stdout, _) = done(dir.path(), &[&["rates", file, "--method", "secant"], out].concat());
+        stdout
     };
     read("lab.csv", &["--out", "rates.csv", "--quiet"]);
     let table = fs::read_to_string(dir.path().join("rates.csv")).unwrap();
@@ -176,9 +171,8 @@ fn a_curve_that_was_fitted_is_drawn_and_gives_the_life() {
     write("fit.toml", &format!("[measured]\nfiles = [\"lot.csv\"]\n{PANEL}"));
     write("case.toml", &format!("{PANEL}[fatigue]\nfitted = \"fit/fitted.toml\"\n[stop]\ncrack_length_mm = 45\n"));
     let done = |arguments: &str| {
-        let output = perilife(dir.path(), &arguments.split(' ').collect::<Vec<_>>());
-        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
-        texts(&output).0
+        let (stdout, _) = done(dir.path(), &arguments.split(' ').collect::<Vec<_>>());
+        stdout
     };
     done("calibrate fit.toml --out fit");
     assert!(fs::read_to_string(dir.path().join("fit/fitted.toml")).unwrap().contains("law = \"curve\""));
@@ -196,8 +190,7 @@ fn a_curve_that_was_fitted_is_drawn_and_gives_the_life() {
     assert_refused(&other, 2, &["stress_ratio = 0.1", "0.2"]);
 
     done("predict case.toml --out run");
-    let result: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(dir.path().join("run/result.json")).unwrap()).unwrap();
+    let result = json(dir.path().join("run/result.json"));
     let readings = curved_readings(&[("two", 1.0)]);
     let row = readings.lines().find(|line| line.ends_with(",45")).unwrap();
     let measured: f64 = row.split(',').nth(1).unwrap().parse().unwrap();

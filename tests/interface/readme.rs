@@ -17,6 +17,7 @@ use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{perilife, texts};
+use crate::support::written::{hold, refreshes};
 
 /// Pictures, and the files that the commands of the README write.
 const PICTURES: [(&str, &str); 1] = [("slant_crack_plate.svg", "out/fit/slant_crack_plate/plate.svg")];
@@ -28,16 +29,17 @@ const PART: f64 = 1e-3;
 const BEGINNINGS: [&str; 2] = ["cargo run -- ", "perilife "];
 const GALLERY: &str = "src/guide/gallery.md";
 
-fn refreshes() -> bool {
-    std::env::var_os("PERILIFE_REFRESH").is_some()
-}
-
-/// Compares a made page with the file, or writes it.
-fn hold(name: &str, wanted: &str) {
-    if fs::read_to_string(name).unwrap_or_default() != wanted {
-        fs::write(name, wanted).unwrap();
-        panic!("{name} was out of date and is written again");
-    }
+/// Thousands that stand apart are one number.
+fn joined(text: &str) -> String {
+    let mut is_grouped = false;
+    text.split(' ').fold(String::new(), |before, word| {
+        let digits = before.chars().rev().take_while(char::is_ascii_digit).count();
+        let is_whole = !before[..before.len() - digits].ends_with('.');
+        let is_group = word.chars().take_while(char::is_ascii_digit).count() == 3;
+        is_grouped = is_group && is_whole && ((1..=3).contains(&digits) || (is_grouped && digits > 3));
+        let between = if is_grouped || before.is_empty() { "" } else { " " };
+        before + between + word
+    })
 }
 
 /// Words of a text without its numbers, and these, each with the unit of its last digit.
@@ -59,7 +61,8 @@ fn timeless(line: &str) -> &str {
 
 /// Fails unless both lines have the same words, and numbers that differ by rounding alone.
 fn assert_same(page: &str, shown: &str, printed: &str) {
-    let ((words, numbers), (of_printed, printed_numbers)) = (taken_apart(timeless(shown)), taken_apart(timeless(printed)));
+    let [shown_whole, printed_whole] = [shown, printed].map(|line| joined(timeless(line)));
+    let ((words, numbers), (of_printed, printed_numbers)) = (taken_apart(&shown_whole), taken_apart(&printed_whole));
     let slack = |[number, unit]: [f64; 2]| PART * number.abs() + 1.01 * unit;
     let is_same = words == of_printed
         && numbers.len() == printed_numbers.len()
@@ -174,12 +177,13 @@ fn what_the_guide_shows_is_of_today() {
     assert!(count > 30, "{count} commands");
 }
 
+fn links(text: &str) -> BTreeSet<&str> {
+    let ends = text.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+    ends.map(|(link, _)| link).filter(|link| !link.contains(':')).collect()
+}
+
 #[test]
 fn every_page_is_in_the_index_and_every_link_leads_somewhere() {
-    let links = |text: &'static str| {
-        let ends = text.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
-        ends.map(|(link, _)| link).filter(|link| !link.contains(':')).collect::<BTreeSet<_>>()
-    };
     let names: BTreeSet<&str> = PAGES.iter().map(|(name, _)| *name).collect();
     let files = pages().iter().filter(|page| page.starts_with("src/guide")).count();
     assert_eq!(names.len(), files + 2, "every file of src/guide is a page; two are elsewhere");
@@ -188,6 +192,12 @@ fn every_page_is_in_the_index_and_every_link_leads_somewhere() {
     for (name, text) in PAGES {
         for link in links(text).iter().filter(|link| !link.contains('/')) {
             assert!(link.strip_suffix(".md").is_some_and(|page| names.contains(page)), "{name} links to {link}");
+        }
+    }
+    for page in pages().iter().map(String::as_str).chain(["README.md", "tests/README.md", "data/README.md"]) {
+        let (text, folder) = (fs::read_to_string(page).unwrap(), Path::new(page).parent().unwrap());
+        for link in links(&text).iter().filter(|link| link.contains('/')) {
+            assert!(folder.join(link.split('#').next().unwrap()).exists(), "{page} links to {link}");
         }
     }
 }
@@ -226,7 +236,7 @@ fn the_page_of_commands_is_the_help() {
     let mut command = CommandLine::command();
     command.build();
     sections("perilife", &command, &mut text);
-    hold("src/guide/commands.md", &text);
+    hold(&[("src/guide/commands.md", &text)]);
 }
 
 /// Examples: name and question, the first sentence of the file.

@@ -1,5 +1,6 @@
 //! `perilife report`: one page of a run or a fit with all that it shows, and what cannot be reported.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -7,22 +8,10 @@ use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::daily::panel_without_law;
+use crate::support::desk::{desk, done, json};
+use crate::support::rows::{assert_says, rows};
 
-const PANEL: &str = r#"
-[specimen]
-kind = "middle_tension"
-width_mm = 152.4
-length_mm = 300.0
-thickness_mm = 2.54
-crack_length_mm = 9.0
-[material]
-name = "al2024-t3"
-[loading]
-stress_range_mpa = 48.28
-stress_ratio = 0.2
-[model]
-method = "handbook"
-"#;
 const LAW: &str = "[fatigue]\nparis_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874\n";
 const MEASURED: &str = "[measured]\nfiles = [\"n.csv\"]\nfrom_crack_length_mm = 9.0\n\
     leave_out = [{ specimen = \"P1\", from_cycles = 0, to_cycles = 9000, reason = \"load of the <precrack>\" }]\n";
@@ -51,20 +40,19 @@ fn readings() -> String {
 
 /// `run` and `fit` beside the inputs that they were made from.
 fn folders() -> TempDir {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("panel.toml"), format!("{PANEL}{LAW}[stop]\ncrack_length_mm = 40.0\n")).unwrap();
-    fs::write(dir.path().join("n.csv"), readings()).unwrap();
-    fs::write(dir.path().join("fit.toml"), format!("{MEASURED}{PANEL}")).unwrap();
+    let dir = desk(&[
+        ("panel.toml", &format!("{}{LAW}[stop]\ncrack_length_mm = 40.0\n", panel_without_law())),
+        ("n.csv", &readings()),
+        ("fit.toml", &format!("{MEASURED}{}", panel_without_law())),
+    ]);
     for call in [["predict", "panel.toml", "--out", "run"], ["calibrate", "fit.toml", "--out", "fit"]] {
-        let output = perilife(dir.path(), &call);
-        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+        done(dir.path(), &call);
     }
     dir
 }
 
 fn report(folder: &Path, of: &str, more: &[&str]) -> String {
-    let output = perilife(folder, &[&["report", of, "--out", "r.html"], more].concat());
-    assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+    done(folder, &[&["report", of, "--out", "r.html"], more].concat());
     fs::read_to_string(folder.join("r.html")).unwrap()
 }
 
@@ -74,9 +62,7 @@ fn assert_alone(page: &str) {
         assert!(!page.contains(outside), "{outside} in the page");
     }
     assert!(page.starts_with("<!doctype html>") && page.ends_with("</html>\n") && !page.contains("NaN"), "whole, without NaN");
-    for what in ["@page", "counter(page) \" of \" counter(pages)", "@media print", "role=\"img\""] {
-        assert!(page.contains(what), "{what}");
-    }
+    assert_says(page, &["@page", "counter(page) \" of \" counter(pages)", "@media print", "role=\"img\""]);
     let (open, close) = (page.matches("<svg").count(), page.matches("</svg>").count());
     assert!(open == close && open > 3, "{open} drawings, {close} ends");
 }
@@ -90,30 +76,31 @@ fn a_run_has_a_page_with_life_validity_and_hashes() {
         &["--laboratory", "Lab <1> & \"Co\"", "--operator", "A. Tester", "--date", "26 Nov 2026", "--set", "report.number=R-12"],
     );
     assert_alone(&page);
-    let result: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("run/result.json")).unwrap()).unwrap();
+    let result = json(dir.path().join("run/result.json"));
     let hash = result["inputs"][0]["sha256"].as_str().unwrap();
     let version = result["version"].as_str().unwrap();
-    for words in [
-        "Lab &lt;1&gt; &amp; &quot;Co&quot;",
-        "A. Tester",
-        "26 Nov 2026",
-        "Cycles to the crack length limit",
-        "crack length limit reached",
-        "scatter band not available",
-        "valid with reservations",
-        "Fracture: not checked (no toughness given)",
-        "Numerical error ≤ 0.86 % of life (estimate)",
-        "stress 12.07 to 60.35 MPa, R = 0.2",
-        "al2024-t3",
-        hash,
-        version,
-        "Report No.</dt><dd>R-12</dd><dt>Customer</dt><dd><span class=\"blank\">not recorded</span>",
-        "Reviewed by, date: </div>",
-        "tests/VALIDATION.md of this version",
-        "content: \"R-12, Crack growth life, panel, perilife ",
-    ] {
-        assert!(page.contains(words), "{words}");
-    }
+    assert_says(
+        &page,
+        &[
+            "Lab &lt;1&gt; &amp; &quot;Co&quot;",
+            "A. Tester",
+            "26 Nov 2026",
+            "Cycles to the crack length limit",
+            "crack length limit reached",
+            "scatter band not available",
+            "valid with reservations",
+            "Fracture: not checked (no toughness given)",
+            "Numerical error ≤ 0.86 % of life (estimate)",
+            "stress 12.07 to 60.35 MPa, R = 0.2",
+            "al2024-t3",
+            hash,
+            version,
+            "Report No.</dt><dd>R-12</dd><dt>Customer</dt><dd><span class=\"blank\">not recorded</span>",
+            "Reviewed by, date: </div>",
+            "tests/VALIDATION.md of this version",
+            "content: \"R-12, Crack growth life, panel, perilife ",
+        ],
+    );
     assert!(!page.contains("<1>"), "names are no markup");
     // The drawings are those of the folder, at another size: the same points along the curve.
     let k = fs::read_to_string(dir.path().join("run/k.svg")).unwrap();
@@ -141,19 +128,20 @@ fn a_fit_has_a_page_with_every_reading() {
     assert!(table.contains("excluded: load of the &lt;precrack&gt;"), "with its reason");
     assert!(table.contains("excluded: outside the fit window"), "P2 starts below the window");
     assert_eq!(table.matches("step under 0.25 mm").count(), 4, "both readings of the short step of both panels");
-    let fit: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("fit/fit.json")).unwrap()).unwrap();
+    let fit = json(dir.path().join("fit/fit.json"));
     assert!((fit["paris_m"].as_f64().unwrap() - 2.874).abs() < 0.05, "{fit}");
-    for words in [
-        "Criteria of ASTM E647",
-        "2 of 78 increments are shorter; used and flagged",
-        "not checked (one crack size per reading)",
-        "Test machine, load cell</dt><dd><span class=\"blank\">not recorded",
-        "Crack plane orientation</dt><dd>L-T</dd>",
-        "Report No.</dt><dd>F-3, revision 2</dd>",
-        fit["inputs"][1]["sha256"].as_str().unwrap(),
-    ] {
-        assert!(page.contains(words), "{words}");
-    }
+    assert_says(
+        &page,
+        &[
+            "Criteria of ASTM E647",
+            "2 of 78 increments are shorter; used and flagged",
+            "not checked (one crack size per reading)",
+            "Test machine, load cell</dt><dd><span class=\"blank\">not recorded",
+            "Crack plane orientation</dt><dd>L-T</dd>",
+            "Report No.</dt><dd>F-3, revision 2</dd>",
+            fit["inputs"][1]["sha256"].as_str().unwrap(),
+        ],
+    );
     // The rates are those of `perilife rates` by the same polynomial.
     let rates = texts(&perilife(dir.path(), &["rates", "n.csv", "--specimen", "panel.toml"])).0;
     let of_panel = rates.lines().find(|line| line.starts_with("P2,") && line.contains("e-")).unwrap();
@@ -168,62 +156,49 @@ fn what_cannot_be_reported_is_refused_with_words() {
     let here = dir.path();
     fs::create_dir(here.join("empty")).unwrap();
     fs::write(here.join("notes.html"), "my notes").unwrap();
-    let (result, fit) = ("run/result.json", "fit/fit.json");
-    let kept: Vec<(&str, Vec<u8>)> = [result, fit, "run/a_n.csv", "fit/readings.csv"]
+    let result = "run/result.json";
+    let kept: BTreeMap<&str, String> = [result, "fit/fit.json", "run/a_n.csv", "fit/readings.csv"]
         .into_iter()
-        .map(|file| (file, fs::read(here.join(file)).unwrap()))
+        .map(|file| (file, fs::read_to_string(here.join(file)).unwrap()))
         .collect();
-    let text = |file: &str| String::from_utf8(kept.iter().find(|(name, _)| *name == file).unwrap().1.clone()).unwrap();
     let with = |file: &str, key: &str, value: Value| {
-        let mut object: Value = serde_json::from_str(&text(file)).unwrap();
+        let mut object: Value = serde_json::from_str(&kept[file]).unwrap();
         object[key] = value;
-        Some(object.to_string())
+        object.to_string()
     };
-    let cut = |file: &str| Some(text(file)[..text(file).len() / 2].to_owned());
-    /// What is done to which file (`None`: it is removed), what is reported, exit code, words.
-    type Bad<'b> = (&'b str, Option<String>, &'b str, i32, &'b [&'b str]);
-    let bad: Vec<Bad<'_>> = vec![
-        ("", None, "no", 4, &["no: cannot read"]),
-        ("", None, "panel.toml", 4, &["panel.toml: cannot read"]),
-        ("", None, "empty", 2, &["empty", "result.json and fit.json are missing", "perilife predict"]),
-        (result, cut(result), "run", 2, &["run/result.json", "cut off or damaged", "copy it again"]),
-        (result, Some("[]".to_owned()), "run", 2, &["run/result.json", "is not a result of `perilife predict`"]),
-        (result, Some("{}".to_owned()), "run", 2, &["run/result.json", "missing field `name`"]),
-        (result, with(result, "stop_reason", 7.into()), "run", 2, &["run/result.json", "stop_reason", "7", "expected a string"]),
-        (result, with(result, "life_cycles", (-1.0).into()), "run", 2, &["life_cycles", "-1", "is below zero"]),
-        (result, with(result, "life_cycles", "long".into()), "run", 2, &["life_cycles", "long", "expected f64"]),
-        (result, with(result, "plate", "square".into()), "run", 2, &["plate", "square", "was modified after the run"]),
-        ("run/a_n.csv", cut("run/a_n.csv"), "run", 2, &["run/a_n.csv", "is cut off"]),
-        ("run/a_n.csv", Some(text("run/a_n.csv").replace(",9.000", ",8.000")), "run", 2, &["run/a_n.csv", "is not the table"]),
-        ("run/a_n.csv", None, "run", 2, &["run/a_n.csv", "is missing"]),
-        (fit, cut(fit), "fit", 2, &["fit/fit.json", "cut off or damaged"]),
-        (fit, with(fit, "paris_m", Value::Null), "fit", 2, &["fit/fit.json", "paris_m", "null", "expected f64"]),
-        ("fit/readings.csv", cut("fit/readings.csv"), "fit", 2, &["fit/readings.csv", "is cut off"]),
-        ("fit/readings.csv", None, "fit", 2, &["fit/readings.csv", "is missing"]),
-    ];
-    for (file, content, of, code, words) in bad {
-        match content {
-            Some(content) => fs::write(here.join(file), content).unwrap(),
+    type Bad = (String, Vec<String>, String, i32, Vec<String>);
+    for (file, change, of, code, words) in rows::<Vec<Bad>>("report", "bad") {
+        let change: Vec<&str> = change.iter().map(String::as_str).collect();
+        let text = kept.get(file.as_str());
+        let changed = match change[..] {
+            ["cut"] => text.map(|text| text[..text.len() / 2].to_owned()),
+            ["write", content] => Some(content.to_owned()),
+            ["replace", old, new] => text.map(|text| text.replace(old, new)),
+            ["set", key, value] => Some(with(&file, key, serde_json::from_str(value).unwrap())),
+            _ => None,
+        };
+        match changed {
+            Some(changed) => fs::write(here.join(&file), changed).unwrap(),
             None if file.is_empty() => {}
-            None => fs::remove_file(here.join(file)).unwrap(),
+            None => fs::remove_file(here.join(&file)).unwrap(),
         }
-        let output = perilife(here, &["report", of, "--out", "bad.html"]);
-        assert_refused(&output, code, words);
+        let output = perilife(here, &["report", &of, "--out", "bad.html"]);
+        assert_refused(&output, code, &words);
         assert!(!here.join("bad.html").exists(), "{of}: nothing half-written");
-        if let Some((_, bytes)) = kept.iter().find(|(name, _)| *name == file) {
-            fs::write(here.join(file), bytes).unwrap();
+        if let Some(text) = text {
+            fs::write(here.join(&file), text).unwrap();
         }
     }
     // A result without hashes, as of an earlier version, whose table is broken: by file, line, column and value.
-    fs::write(here.join(result), with(result, "tables", serde_json::json!([])).unwrap()).unwrap();
-    fs::write(here.join("run/a_n.csv"), text("run/a_n.csv").replacen(",9.000000000,", ",nine,", 1)).unwrap();
+    fs::write(here.join(result), with(result, "tables", serde_json::json!([]))).unwrap();
+    fs::write(here.join("run/a_n.csv"), kept["run/a_n.csv"].replacen(",9.000000000,", ",nine,", 1)).unwrap();
     assert_refused(
         &perilife(here, &["report", "run", "--out", "bad.html"]),
         2,
         &["run/a_n.csv:2", "crack_length_mm", "\"nine\""],
     );
-    fs::write(here.join(result), text(result)).unwrap();
-    fs::write(here.join("run/a_n.csv"), text("run/a_n.csv")).unwrap();
+    fs::write(here.join(result), &kept[result]).unwrap();
+    fs::write(here.join("run/a_n.csv"), &kept["run/a_n.csv"]).unwrap();
 
     let in_the_way: [(&str, i32, &[&str]); 4] = [
         ("notes.html", 2, &["notes.html", "did not write"]),
@@ -235,7 +210,7 @@ fn what_cannot_be_reported_is_refused_with_words() {
         assert_refused(&perilife(here, &["report", "run", "--out", out]), code, words);
     }
     assert_eq!(fs::read_to_string(here.join("notes.html")).unwrap(), "my notes");
-    assert_eq!(fs::read(here.join(result)).unwrap(), text(result).into_bytes());
+    assert_eq!(fs::read_to_string(here.join(result)).unwrap(), kept[result]);
 }
 
 #[test]
@@ -262,11 +237,10 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
             &more.split_whitespace().collect::<Vec<_>>()[..],
         ]
         .concat();
-        let output = perilife(dir.path(), &arguments);
-        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+        done(dir.path(), &arguments);
         let page = report(dir.path(), "run", &[]);
         assert_alone(&page);
-        (page, serde_json::from_str::<Value>(&fs::read_to_string(dir.path().join("run/result.json")).unwrap()).unwrap())
+        (page, json(dir.path().join("run/result.json")))
     };
     let assert_says = |page: &str, all: &[&str]| all.iter().for_each(|words| assert!(page.contains(words), "{words}"));
     // Thousands apart, as the report writes them.

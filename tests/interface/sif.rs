@@ -7,6 +7,7 @@ use serde_json::Value;
 use tempfile::tempdir;
 
 use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
+use crate::support::desk::{desk, done};
 
 /// A slant crack in a plate that no handbook covers.
 const SLANT: &str = "cracks = [{ from_mm = [-13, -7.5], to_mm = [13, 7.5] }]\n";
@@ -17,16 +18,13 @@ fn plate(extra: &str) -> String {
 }
 
 fn json(folder: &Path, arguments: &[&str]) -> Value {
-    let output = perilife(folder, arguments);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let (stdout, _) = done(folder, arguments);
     serde_json::from_str(&stdout).expect("one JSON object and nothing else")
 }
 
 #[test]
 fn a_standard_specimen_stands_beside_its_handbook() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    let dir = desk(&[("small.toml", &SMALL_CASE)]);
     let object = json(dir.path(), &["sif", "small.toml", "--json", "--set", "model.spacing_mm=1"]);
     let tips = object["tips"].as_array().unwrap();
     assert_eq!(
@@ -75,8 +73,7 @@ fn small_cracks_in_large_plates_are_on_nodes() {
 
 #[test]
 fn a_plate_has_both_modes_and_no_handbook() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("slant.toml"), plate(SLANT).replace("width_mm = 60.0", "width_mm = 120.0")).unwrap();
+    let dir = desk(&[("slant.toml", &plate(SLANT).replace("width_mm = 60.0", "width_mm = 120.0"))]);
     let object = json(dir.path(), &["sif", "slant.toml", "--json", "--method", "ring"]);
     for tip in object["tips"].as_array().unwrap() {
         assert_eq!((&tip["handbook_k_i_mpa_sqrt_m"], tip["methods"].as_object().unwrap().len()), (&Value::Null, 1));
@@ -92,8 +89,7 @@ fn a_plate_has_both_modes_and_no_handbook() {
         plate(SLANT).replace("a = 1e5\np = 3.0\nhorizon_mm = 6.03", "fitted = \"none.toml\""),
     )
     .unwrap();
-    let output = perilife(dir.path(), &["sif", "unfitted.toml", "--method", "ring"]);
-    assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+    done(dir.path(), &["sif", "unfitted.toml", "--method", "ring"]);
 }
 
 /// A crack along the load below another one: the plate, which gets narrower there, presses its upper tip shut.
@@ -102,9 +98,7 @@ fn closed_tips_are_told() {
     let dir = tempdir().unwrap();
     let cracks = "cracks = [{ from_mm = [-15, 0], to_mm = [15, 0] }, { from_mm = [0, -16], to_mm = [0, -3.5] }]\n";
     fs::write(dir.path().join("near.toml"), plate(cracks)).unwrap();
-    let output = perilife(dir.path(), &["sif", "near.toml", "--json", "--method", "ring", "-v"]);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let (stdout, stderr) = done(dir.path(), &["sif", "near.toml", "--json", "--method", "ring", "-v"]);
     assert!(stderr.contains("tip 3 is closed by the load") && stderr.contains("frictionless"), "{stderr}");
     let object: Value = serde_json::from_str(&stdout).unwrap();
     for (tip, state) in [(0, Value::Null), (1, Value::Null), (3, "closed".into())] {
@@ -117,10 +111,10 @@ fn closed_tips_are_told() {
 
 #[test]
 fn bad_input_is_refused() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
-    fs::write(dir.path().join("notch.toml"), plate("notches = [{ from_mm = [-30, 0], to_mm = [-15, 0], width_mm = 3 }]\n"))
-        .unwrap();
+    let dir = desk(&[
+        ("small.toml", &SMALL_CASE),
+        ("notch.toml", &plate("notches = [{ from_mm = [-30, 0], to_mm = [-15, 0], width_mm = 3 }]\n")),
+    ]);
     let calls: [(&[&str], i32, &[&str]); 5] = [
         (&["sif", "small.toml", "--method", "jj"], 2, &["sif --method = \"jj\"", "ring", "element_free_galerkin"]),
         (&["sif", "no.toml"], 4, &["no.toml", "cannot read"]),

@@ -4,41 +4,18 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use tempfile::tempdir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::desk::{desk, json};
+use crate::support::rows::{assert_says, rows};
 
-const CASE: &str = r#"[specimen]
-kind = "middle_tension"
-width_mm = 100.0
-length_mm = 300.0
-thickness_mm = 2.0
-crack_length_mm = 5.0
-[material]
-youngs_modulus_gpa = 72.0
-poisson_ratio = 0.33
-yield_strength_mpa = 340.0
-[loading]
-kind = "spectrum"
-spectrum_file = "flights.csv"
-spectrum_scale_mpa = 100.0
-[model]
-method = "handbook"
-[fatigue]
-growth_law = "walker"
-paris_c_mm_per_cycle = 1e-7
-paris_m = 3.0
-walker_gamma = 0.6
-[stop]
-crack_length_mm = 30.0
-"#;
+const CASE: &str = include_str!("../reference/cases/spectrum.toml");
 const FLIGHTS: &str = "max,min,cycles\n0.6,0.1,20\n1.0,0.05,1\n0.5,0.2,40\n";
 const WHEELER: &str = "spectrum_scale_mpa = 100.0\nretardation = \"wheeler\"\nwheeler_exponent = 1.3\n";
 
 /// Runs a command on the case, changed, with this spectrum.
 fn run(case: &str, file: &str, content: &str, arguments: &[&str]) -> (tempfile::TempDir, std::process::Output) {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("case.toml"), case).unwrap();
+    let dir = desk(&[("case.toml", &case)]);
     fs::write(dir.path().join(file), content).unwrap();
     let output = perilife(dir.path(), arguments);
     (dir, output)
@@ -46,71 +23,24 @@ fn run(case: &str, file: &str, content: &str, arguments: &[&str]) -> (tempfile::
 
 #[test]
 fn spectra_that_are_none_are_refused_by_file_line_and_value() {
-    let rows: [(&str, &str, &[&str]); 14] = [
-        ("flights.csv", "0.7\n", &["flights.csv", "turning points", "too few"]),
-        ("flights.csv", "", &["flights.csv", "empty"]),
-        ("flights.csv", "max,min,cycles\n", &["flights.csv", "no rows"]),
-        ("flights.csv", "max,min,cycles\n1,0.1,5\n0.5,nan,2\n", &["flights.csv:3:", "min = nan", "finite"]),
-        (
-            "flights.csv",
-            "max,min,cycles\n1,0.1,5\n0.1,0.5,2\n",
-            &["flights.csv:3:", "min = 0.5", "above the maximum", "turning_points"],
-        ),
-        ("flights.csv", "max,min,cycles\n0.5,0.5,2\n", &["flights.csv", "contains no cycles", "no row has a range"]),
-        ("flights.csv", "max,min,cycles\n0.5,0.1,-2\n", &["flights.csv:2:", "cycles = -2", "0 or more"]),
-        ("flights.csv", "max,min,cycles\n0.5,x,1\n", &["flights.csv:2:", "min = x", "not a number"]),
-        ("flights.csv", "max,min,cycles\n-0.5,-1,1\n", &["flights.csv", "no tensile load", "positive"]),
-        ("flights.csv", "max_ksi,max,min\n1,2,3\n", &["flights.csv:1:", "max", "duplicates an earlier column"]),
-        ("flights.csv", "max,min,cycles\n1,0.5,2,7\n", &["flights.csv:2:", "4 columns where the header has 3"]),
-        ("flights.csv", "title\n5 1.0 0.0 0 0\n1 2 3\n", &["flights.csv:2:", "points = 5", "3"]),
-        ("flights.csv", "title\n3 1.0 0.0 1 0\n1 2 3\n", &["flights.csv:2:", "INVERT = 1", "is not supported"]),
-        ("flights.csv", "<A>\n<B Mx=\"1\" Mn=\"0\"/></A>", &["flights.csv:2:", "C", "missing"]),
-    ];
-    for (file, content, words) in rows {
-        let (dir, output) = run(CASE, file, content, &["predict", "case.toml", "--out", "run"]);
-        assert_refused(&output, 2, words);
+    for (content, words) in rows::<Vec<(String, Vec<String>)>>("spectrum", "no_spectra") {
+        let (dir, output) = run(CASE, "flights.csv", &content, &["predict", "case.toml", "--out", "run"]);
+        assert_refused(&output, 2, &words);
         assert!(!dir.path().join("run").exists(), "{content}");
     }
 }
 
 #[test]
 fn keys_that_do_not_make_a_spectrum_are_refused() {
-    let rows: [(&str, &str, &[&str]); 13] = [
-        ("spectrum_file = \"flights.csv\"\n", "", &["loading.spectrum_file", "missing"]),
-        ("spectrum_scale_mpa = 100.0\n", "", &["loading.spectrum_scale_mpa", "no load given", "spectrum_scale_n"]),
-        ("spectrum_scale_mpa = 100.0\n", "stress_max_mpa = 100\n", &["loading.stress_max_mpa", "spectrum_scale_mpa"]),
-        (
-            "spectrum_scale_mpa = 100.0\n",
-            "spectrum_scale_mpa = 100.0\nstress_ratio = 0.1\n",
-            &["loading.stress_ratio", "remove it"],
-        ),
-        ("kind = \"spectrum\"\n", "", &["loading.spectrum_file", "kind = \"spectrum\""]),
-        (
-            "spectrum_scale_mpa = 100.0\n",
-            "spectrum_scale_mpa = 100.0\nomission_percent = 120\n",
-            &["loading.omission_percent", "99"],
-        ),
-        ("yield_strength_mpa = 340.0\n", "", &["loading.retardation", "yield_strength_mpa"]),
-        ("wheeler_exponent = 1.3\n", "", &["loading.wheeler_exponent", "missing"]),
-        ("wheeler_exponent = 1.3\n", "wheeler_exponent = 1.3\nshutoff_ratio = 2\n", &["loading.shutoff_ratio", "wheeler"]),
-        ("\"wheeler\"", "\"weeler\"", &["loading.retardation", "did you mean \"wheeler\"?"]),
-        ("\"wheeler\"\nwheeler_exponent = 1.3\n", "\"willenborg\"\nshutoff_ratio = 2\n", &["willenborg_k_th", "threshold"]),
-        ("method = \"handbook\"", "spacing_mm = 2\n[output]\n", &[]),
-        (
-            "kind = \"spectrum\"\nspectrum_file = \"flights.csv\"\nspectrum_scale_mpa = 100.0\n",
-            "stress_max_mpa = 90\nstress_ratio = 0.1\n",
-            &["loading.retardation", "kind = \"spectrum\""],
-        ),
-    ];
     let wheeler = CASE.replace("spectrum_scale_mpa = 100.0\n", WHEELER);
-    for (old, new, words) in rows {
-        assert!(wheeler.contains(old), "{old}");
-        let (_, output) = run(&wheeler.replace(old, new), "flights.csv", FLIGHTS, &["check", "case.toml"]);
+    for (old, new, words) in rows::<Vec<(String, String, Vec<String>)>>("spectrum", "wrong_keys") {
+        assert!(wheeler.contains(&old), "{old}");
+        let (_, output) = run(&wheeler.replace(&old, &new), "flights.csv", FLIGHTS, &["check", "case.toml"]);
         if words.is_empty() {
             assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
             continue;
         }
-        assert_refused(&output, 2, words);
+        assert_refused(&output, 2, &words);
     }
     // Bonds that lose life by their own strain have no rate over K.
     let bonds = CASE.replace("method = \"handbook\"", "method = \"peridynamics\"");
@@ -124,17 +54,18 @@ fn keys_that_do_not_make_a_spectrum_are_refused() {
 fn check_and_predict_say_what_the_spectrum_is() {
     let wheeler = CASE.replace("spectrum_scale_mpa = 100.0\n", WHEELER);
     let (_, output) = run(&wheeler, "flights.csv", FLIGHTS, &["check", "case.toml", "-v"]);
-    let (stdout, stderr) = texts(&output);
-    for words in ["5 to 100 MPa", "flights.csv (cycles): 61 cycles a pass", "3 kinds", "repeated until failure", "wheeler"] {
-        assert!(stdout.contains(words), "{words} in {stdout}{stderr}");
-    }
+    let (stdout, _) = texts(&output);
+    assert_says(
+        &stdout,
+        &["5 to 100 MPa", "flights.csv (cycles): 61 cycles a pass", "3 kinds", "repeated until failure", "wheeler"],
+    );
     let mut lives = Vec::new();
     for case in [CASE, &wheeler] {
         let (dir, output) = run(case, "flights.csv", FLIGHTS, &["predict", "case.toml", "--out", "run"]);
         let (stdout, stderr) = texts(&output);
         assert_eq!(output.status.code(), Some(0), "{stdout}{stderr}");
         let folder = dir.path().join("run");
-        let result: Value = serde_json::from_str(&fs::read_to_string(folder.join("result.json")).unwrap()).unwrap();
+        let result = json(folder.join("result.json"));
         let life = result["life_cycles"].as_f64().unwrap();
         assert!((result["passes"].as_f64().unwrap() * 61.0 / life - 1.0).abs() < 1e-9);
         assert_eq!(result["spectrum"]["cycles_per_pass"], 61.0);
@@ -147,7 +78,6 @@ fn check_and_predict_say_what_the_spectrum_is() {
     assert!(lives[1].0 > 1.1 * lives[0].0, "{lives:?}");
 }
 
-/// A spectrum of one size is constant amplitude, in every method.
 #[test]
 fn a_spectrum_of_equal_cycles_is_constant_amplitude() {
     let constant = CASE.replace(

@@ -7,11 +7,12 @@ use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::cargo_bin;
 use serde_json::Value;
-use tempfile::{TempDir, tempdir};
+use tempfile::TempDir;
 
 use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
 use crate::interface::service::jobs::with_store;
-use crate::support::server::{PATIENCE, Server, in_folder};
+use crate::support::desk::{desk, done, json};
+use crate::support::server::{PATIENCE, Server, in_folder, wait};
 use crate::support::slurm::Slurm;
 
 const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300\nthickness_mm = 2.54\n\
@@ -24,18 +25,7 @@ pub const GRID: &str = "case = \"panel.toml\"\n[design]\nkind = \"grid\"\n[[vary
     values = [8.0, 9.5]\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nfrom = 40\nto = 60\ncount = 3\n";
 
 pub fn folder_with(sweep: &str) -> TempDir {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("panel.toml"), PANEL).unwrap();
-    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
-    fs::write(dir.path().join("sweep.toml"), sweep).unwrap();
-    dir
-}
-
-fn done(folder: &Path, arguments: &[&str]) -> String {
-    let output = perilife(folder, arguments);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{stderr}{stdout}");
-    stdout
+    desk(&[("panel.toml", &PANEL), ("small.toml", &SMALL_CASE), ("sweep.toml", &sweep)])
 }
 
 /// Rows of a table without `wall_s`, which differs from run to run.
@@ -47,15 +37,11 @@ fn rows(folder: &Path) -> Vec<Vec<String>> {
     rows
 }
 
-fn json(path: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
-}
-
 #[test]
 fn a_grid_gives_the_lives_of_single_predictions() {
     let dir = folder_with(GRID);
     let here = dir.path();
-    let stdout = done(here, &["sweep", "sweep.toml", "--out", "out", "--threads", "3"]);
+    let (stdout, _) = done(here, &["sweep", "sweep.toml", "--out", "out", "--threads", "3"]);
     assert!(stdout.contains("6 cases, 6 succeeded, 0 failed") && stdout.contains("median"), "{stdout}");
     let rows = rows(&here.join("out"));
     let head = "case,specimen.crack_length_mm,loading.stress_range_mpa,life_cycles,stop_reason,crack_length_final_mm,problem,life_is_lower_bound";
@@ -78,7 +64,7 @@ fn a_grid_gives_the_lives_of_single_predictions() {
         lives.push(row[3].parse::<f64>().unwrap());
     }
     lives.sort_by(f64::total_cmp);
-    let figures = json(&here.join("out/sweep.json"));
+    let figures = json(here.join("out/sweep.json"));
     let quantile = |key: &str| figures["life_cycles"][key].as_f64().unwrap();
     assert!((quantile("p50") - 0.5 * (lives[2] + lives[3])).abs() < 1e-6);
     assert!((quantile("p05") - (lives[0] + 0.25 * (lives[1] - lives[0]))).abs() < 1e-6, "definition 7");
@@ -88,8 +74,8 @@ fn a_grid_gives_the_lives_of_single_predictions() {
     assert_eq!(fs::read_dir(here).unwrap().count(), 5, "no temporary folder stays");
 
     // Summaries alone, and the figures on stdout.
-    let stdout = done(here, &["sweep", "sweep.toml", "--out", "brief", "--summary-only", "--json"]);
-    assert_eq!(serde_json::from_str::<Value>(&stdout).unwrap(), json(&here.join("brief/sweep.json")));
+    let (stdout, _) = done(here, &["sweep", "sweep.toml", "--out", "brief", "--summary-only", "--json"]);
+    assert_eq!(serde_json::from_str::<Value>(&stdout).unwrap(), json(here.join("brief/sweep.json")));
     assert_eq!(self::rows(&here.join("brief")), rows);
     assert!(!here.join("brief/cases/0001/a_n.csv").exists());
     // Files that are wanted later are made then.
@@ -136,11 +122,7 @@ fn a_killed_sweep_goes_on() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    let begun = Instant::now();
-    while !here.join("out/cases/0001/outcome.toml").is_file() {
-        assert!(begun.elapsed() < PATIENCE, "no case is done");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait("no case is done", || here.join("out/cases/0001/outcome.toml").is_file());
     let _ = process.kill();
     process.wait().unwrap();
     assert!(!here.join("out/sweep.csv").exists(), "it was killed before its end");
@@ -164,7 +146,7 @@ fn a_failing_case_is_a_row() {
     let design = "[design]\nkind = \"grid\"\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nvalues = [48.28, 130.0]\n";
     let dir = folder_with(&format!("case = {:?}\n{design}", panel.display().to_string()));
     let here = dir.path();
-    let stdout = done(here, &["sweep", "sweep.toml", "--out", "out"]);
+    let (stdout, _) = done(here, &["sweep", "sweep.toml", "--out", "out"]);
     assert!(
         stdout.contains("1 succeeded, 1 failed") && stdout.contains("failed         0002: fatigue.allow_extrapolation"),
         "{stdout}"
@@ -172,7 +154,7 @@ fn a_failing_case_is_a_row() {
     let table = fs::read_to_string(here.join("out/sweep.csv")).unwrap();
     let row = table.lines().nth(2).unwrap();
     assert!(row.starts_with("0002,130.0000000,,,,") && row.contains("above the tested ΔK"), "{row}");
-    assert_eq!(json(&here.join("out/sweep.json"))["failures"][0]["case"], "0002");
+    assert_eq!(json(here.join("out/sweep.json"))["failures"][0]["case"], "0002");
     // It is not tried again, and where no case has a result the sweep has none.
     assert!(texts(&perilife(here, &["sweep", "sweep.toml", "--out", "out"])).1.contains("2 of 2 cases already finished"));
     let output = perilife(here, &["sweep", "sweep.toml", "--out", "none", "--set", "vary[0].values=[130.0]"]);
@@ -191,12 +173,12 @@ fn shards_and_collect_give_the_same_table() {
     let here = dir.path();
     done(here, &["sweep", "sweep.toml", "--out", "whole"]);
     let part = |i: &str| done(here, &["sweep", "sweep.toml", "--out", "parts", "--shard", i]);
-    assert!(part("1/4").contains("sweep 1/4: 2 cases, 2 run, 0 failed"));
+    assert!(part("1/4").0.contains("sweep 1/4: 2 cases, 2 run, 0 failed"));
     part("3/4");
     let output = perilife(here, &["collect", "parts"]);
     assert_eq!(output.status.code(), Some(3));
     assert!(texts(&output).1.contains("3 of 6 cases are missing: 0002, 0004, 0006;"), "{}", texts(&output).1);
-    assert_eq!(json(&here.join("parts/sweep.json"))["missing_cases"], serde_json::json!(["0002", "0004", "0006"]));
+    assert_eq!(json(here.join("parts/sweep.json"))["missing_cases"], serde_json::json!(["0002", "0004", "0006"]));
     assert!(fs::read_to_string(here.join("parts/sweep.csv")).unwrap().contains("0002,8.000000000,50.00000000,,,,,not run yet"));
     for i in ["2/4", "4/4"] {
         part(i);
@@ -230,11 +212,7 @@ fn workers_of_a_service_give_the_same_table() {
         let service = Server::start(place, &["--jobs", "0"]);
         let jobs = || service.get("/v1/predictions?limit=200").json()["items"].as_array().unwrap().clone();
         let wait_for = |count: usize| {
-            let begun = Instant::now();
-            while jobs().len() < count {
-                assert!(begun.elapsed() < PATIENCE, "{} jobs", jobs().len());
-                std::thread::sleep(Duration::from_millis(20));
-            }
+            wait("too few jobs", || jobs().len() >= count);
         };
         let mut process = start();
         wait_for(6);
@@ -330,11 +308,7 @@ fn an_array_job_of_slurm_gives_the_same_table() {
     let stdout = run(&base);
     assert!(stdout.contains("perilife collect a job's"), "{stdout}");
     assert!(fs::read_to_string(here.join("a job's/job.sh")).unwrap().contains("#SBATCH --array=2\n"));
-    let begun = Instant::now();
-    while perilife(here, &["collect", "a job's"]).status.code() != Some(0) {
-        assert!(begun.elapsed() < PATIENCE, "{:?}", cluster.ask("squeue", &[]));
-        std::thread::sleep(Duration::from_millis(200));
-    }
+    wait("the array job ends", || perilife(here, &["collect", "a job's"]).status.code() == Some(0));
     assert_eq!(rows(&here.join("a job's")), rows(&here.join("local")));
 }
 
@@ -365,7 +339,7 @@ fn drawn_laws_scatter_as_the_specimens_did() {
     fs::write(here.join("panel.toml"), panel).unwrap();
     fs::write(here.join("scatter.toml"), "case = \"panel.toml\"\n[design]\nkind = \"fitted_scatter\"\nsamples = 400\n").unwrap();
     done(here, &["sweep", "scatter.toml", "--out", "drawn", "--summary-only"]);
-    let life = |folder: &str, key: &str| json(&here.join(folder).join("sweep.json"))["life_cycles"][key].as_f64().unwrap();
+    let life = |folder: &str, key: &str| json(here.join(folder).join("sweep.json"))["life_cycles"][key].as_f64().unwrap();
     for key in ["p05", "p50", "p95"] {
         let [tests, drawn] = ["tests", "drawn"].map(|folder| life(folder, key));
         println!("{key}: {tests:.0} of the panels, {drawn:.0} drawn");

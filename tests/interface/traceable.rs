@@ -6,7 +6,8 @@ use perilife_base::input::sha256;
 use serde_json::{Value, json};
 
 use crate::interface::cli::{perilife, texts};
-use crate::interface::doors::{answer, done, examples, written};
+use crate::interface::doors::{answer, examples, written};
+use crate::support::desk::done;
 
 /// Hashes of all that was read, the texts, overrides, time with zone, commit; a fracture scene and a calibration are repeated by their
 /// echoes as well.

@@ -1,12 +1,13 @@
 //! Chromium without a screen, driven through ChromeDriver by the WebDriver protocol (W3C 2018), where the machine has both.
 
-use std::net::TcpListener;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use ureq::Agent;
+
+use crate::support::installed::{free_ports, or_skipped};
 
 const DRIVER: &str = "/usr/bin/chromedriver";
 const BROWSER: &str = "/usr/bin/chromium";
@@ -21,17 +22,12 @@ pub struct Browser {
 }
 
 impl Browser {
-    /// Starts one; `None`, with the reason printed, where that cannot be. A machine that is meant to have it says so in
-    /// `PERILIFE_TESTS_NEED`, and the test fails there.
+    /// Starts one, where the machine has it.
     pub fn start() -> Option<Browser> {
-        if !(Path::new(DRIVER).is_file() && Path::new(BROWSER).is_file()) {
-            let why = "no browser is installed (Debian: apt-get install chromium chromium-driver)";
-            let needed = std::env::var("PERILIFE_TESTS_NEED").is_ok_and(|needs| needs.contains("chromium"));
-            assert!(!needed, "Chromium is needed here: {why}");
-            println!("skipped: {why}");
-            return None;
-        }
-        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let is_there = Path::new(DRIVER).is_file() && Path::new(BROWSER).is_file();
+        let missing = "no browser is installed (Debian: apt-get install chromium chromium-driver)".to_owned();
+        or_skipped("chromium", is_there.then_some(()).ok_or(missing))?;
+        let [port] = free_ports();
         let quiet = || Stdio::null();
         let driver =
             Command::new(DRIVER).arg(format!("--port={port}")).stdin(quiet()).stdout(quiet()).stderr(quiet()).spawn().unwrap();
@@ -182,7 +178,6 @@ impl Browser {
         cdp("Emulation.setEmulatedMedia", preferred);
     }
 
-    /// Puts what is downloaded into a folder.
     pub fn download_into(&self, folder: &Path) {
         let params = json!({ "behavior": "allow", "downloadPath": folder });
         self.command("goog/cdp/execute", &json!({ "cmd": "Browser.setDownloadBehavior", "params": params }));

@@ -45,7 +45,6 @@ pub fn net(scene: &Scene) -> Net {
     Net::of_body(&body)
 }
 
-/// The law of a scene.
 pub fn law<'n>(scene: &Scene, net: &'n Net) -> Correspondence<'n> {
     let SceneLaw::Correspondence { control, factor } = scene.model.law else { panic!("a scene of correspondence") };
     Correspondence::new(scene, net, control, factor).unwrap()
@@ -56,7 +55,6 @@ pub fn bonds(net: &Net) -> BondState {
     BondState::new(net, &vec![false; net.len()])
 }
 
-/// Displacements of a field.
 pub fn field(net: &Net, u: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<f64> {
     net.positions.iter().flat_map(|&x| u(x)).collect()
 }

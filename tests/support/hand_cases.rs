@@ -40,7 +40,6 @@ pub fn hand_case(specimen: &str, set: &[&str]) -> Case {
     try_hand_case(specimen, set).unwrap()
 }
 
-/// Its run.
 pub fn hand_run(specimen: &str, set: &[&str]) -> Prediction {
     predict(&hand_case(specimen, set), &Silent).unwrap()
 }

@@ -64,8 +64,8 @@ fn curve() -> Vec<CurvePoint> {
             cycles += 0.2e-3 / growth_rate;
         }
         let y = y0 + 1.2e-3 * (1.0 - (-growth / 2e-3).exp());
-        let tip = |sign: f64| TipRecord::unread(TipState::Active, [sign * (x0 + growth), sign * y], growth);
-        let row = CurvePoint::bare(cycles, crack_length, vec![tip(-1.0), tip(1.0)]);
+        let at = |sign: f64| tip([sign * (x0 + growth), sign * y], growth);
+        let row = CurvePoint::bare(cycles, crack_length, vec![at(-1.0), at(1.0)]);
         curve.push(CurvePoint { delta_k, growth_rate, work: 1.0 + crack_length, broken_bonds: 9 * step, ..row });
     }
     curve
@@ -125,4 +125,9 @@ pub fn judged(case: &Case, run: &Prediction) -> Judged {
 /// `result.json` of a run.
 pub fn result(case: &Case, run: &Prediction) -> serde_json::Value {
     serde_json::to_value(judged(case, run).record).unwrap()
+}
+
+/// A tip at a place that has grown so far, whose K nobody read.
+pub fn tip(position: Point, growth: f64) -> TipRecord {
+    TipRecord::unread(TipState::Active, position, growth)
 }

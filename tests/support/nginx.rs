@@ -1,16 +1,17 @@
 //! nginx with the configuration of `data/deploy` before a service of a test, where the machine has it.
 
 use std::fs;
-use std::net::{TcpListener, TcpStream};
+use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
+use crate::support::installed::{end, free_ports, is_root, or_skipped};
+
 const PROGRAM: &str = "/usr/sbin/nginx";
 const PATIENCE: Duration = Duration::from_secs(20);
-/// As it is delivered.
 pub const DELIVERED: &str = include_str!("../../data/deploy/nginx.conf");
 
 /// A proxy, stopped and removed when dropped.
@@ -24,16 +25,9 @@ pub struct Nginx {
 }
 
 impl Nginx {
-    /// The delivered configuration with other ports, names and certificate, not started; `None`, with the reason printed, where that
-    /// cannot be. A machine that is meant to have it says so in `PERILIFE_TESTS_NEED`, and the test fails there.
+    /// The delivered configuration with other ports, names and certificate, not started, where the machine has it.
     pub fn configured(service: &str) -> Option<Nginx> {
-        let configured = Self::try_configure(service);
-        if let Err(why) = &configured {
-            let needed = std::env::var("PERILIFE_TESTS_NEED").is_ok_and(|needs| needs.contains("nginx"));
-            assert!(!needed, "nginx is needed here: {why}");
-            println!("skipped with nginx: {why}");
-        }
-        configured.ok()
+        or_skipped("nginx", Self::try_configure(service))
     }
 
     /// Starts it before the service at this address.
@@ -61,9 +55,7 @@ impl Nginx {
             .output()
             .map_err(|error| format!("openssl, for a certificate: {error}"))?;
         assert!(certificate.status.success(), "{}", String::from_utf8_lossy(&certificate.stderr));
-        // All open at once, or two could be the same.
-        let free = [(); 3].map(|()| TcpListener::bind("127.0.0.1:0").unwrap());
-        let [redirecting, tls_port, plain] = free.map(|listener| listener.local_addr().unwrap().port());
+        let [redirecting, tls_port, plain] = free_ports::<3>();
         let mut text = DELIVERED.to_owned();
         for (delivered, here) in [
             ("server 127.0.0.1:8080;", format!("server {};", service.trim_start_matches("http://"))),
@@ -108,20 +100,7 @@ impl Nginx {
 
 impl Drop for Nginx {
     fn drop(&mut self) {
-        let Some(process) = &mut self.process else { return };
         // The master ends its workers, if it is asked to.
-        let _ = Command::new("kill").args(["-TERM", &process.id().to_string()]).status();
-        let begun = Instant::now();
-        while process.try_wait().is_ok_and(|ended| ended.is_none()) {
-            if begun.elapsed() > PATIENCE {
-                let _ = process.kill();
-            }
-            std::thread::sleep(Duration::from_millis(20));
-        }
+        self.process.iter_mut().for_each(|process| end(process, PATIENCE));
     }
-}
-
-fn is_root() -> bool {
-    use std::os::unix::fs::MetadataExt;
-    Path::new("/proc/self").metadata().is_ok_and(|process| process.uid() == 0)
 }

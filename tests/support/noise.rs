@@ -1,4 +1,4 @@
-//! Normal noise that is the same on every machine.
+//! Normal noise and whole numbers by chance that are the same on every machine.
 
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
@@ -28,5 +28,25 @@ impl Noise {
     pub fn normal(&mut self) -> f64 {
         let (u, v) = (1.0 - self.uniform(), self.uniform());
         (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+    }
+}
+
+/// Whole numbers that look random (Park and Miller 1988, Commun. ACM 31:1192).
+pub struct Chance(u64);
+
+impl Chance {
+    pub fn new(seed: u64) -> Self {
+        Chance(seed * 7919 + 1)
+    }
+
+    /// The next number below a bound.
+    pub fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0 * 48_271 % 2_147_483_647;
+        (self.0 as usize / 7) % bound
+    }
+
+    /// One of these.
+    pub fn of<T: Clone>(&mut self, all: &[T]) -> T {
+        all[self.below(all.len())].clone()
     }
 }

@@ -1,10 +1,11 @@
 //! A PostgreSQL server of a test's own, where the machine has the programs for one.
 
-use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use tempfile::TempDir;
+
+use crate::support::installed::{free_ports, is_root, or_skipped};
 
 /// A server with its own folder and port, stopped and removed when dropped.
 pub struct Postgres {
@@ -14,22 +15,15 @@ pub struct Postgres {
 }
 
 impl Postgres {
-    /// Starts one; `None`, with the reason printed, where that cannot be. A machine that is meant to have it says so in
-    /// `PERILIFE_TESTS_NEED`, and the test fails there.
+    /// Starts one, where the machine has it.
     pub fn start() -> Option<Postgres> {
-        let started = Self::try_start();
-        if let Err(why) = &started {
-            let needed = std::env::var("PERILIFE_TESTS_NEED").is_ok_and(|needs| needs.contains("postgres"));
-            assert!(!needed, "PostgreSQL is needed here: {why}");
-            println!("skipped with PostgreSQL: {why}");
-        }
-        started.ok()
+        or_skipped("postgres", Self::try_start())
     }
 
     fn try_start() -> Result<Postgres, String> {
         let programs = programs().ok_or("no server is installed (Debian: apt-get install postgresql)")?;
         let folder = tempfile::Builder::new().prefix("perilife-pg").tempdir().map_err(|error| error.to_string())?;
-        let port = TcpListener::bind("127.0.0.1:0").and_then(|free| free.local_addr()).map_err(|error| error.to_string())?.port();
+        let [port] = free_ports();
         let server = Postgres { programs, folder, port };
         if is_root() {
             run(Command::new("chown").arg("postgres").arg(server.folder.path()))?;
@@ -117,11 +111,6 @@ fn programs() -> Option<PathBuf> {
         versions.map(|version| version.path().join("bin")).filter(|bin| bin.join("initdb").is_file()).collect();
     found.sort();
     found.pop()
-}
-
-fn is_root() -> bool {
-    use std::os::unix::fs::MetadataExt;
-    Path::new("/proc/self").metadata().is_ok_and(|process| process.uid() == 0)
 }
 
 fn run(command: &mut Command) -> Result<(), String> {

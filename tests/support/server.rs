@@ -14,6 +14,16 @@ use ureq::http::{Request, Response};
 /// Longest wait for anything, on a machine with other things to do.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
+/// Waits until something is so.
+#[track_caller]
+pub fn wait(what: &str, mut is_so: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !is_so() {
+        assert!(begun.elapsed() < PATIENCE, "{what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
 /// A running `perilife serve` (or `worker`), killed when dropped.
 pub struct Server {
     process: Child,
@@ -63,6 +73,14 @@ impl Server {
         let url = line.rsplit(' ').next().unwrap_or_default().trim().to_owned();
         assert!(url.starts_with("http://127.0.0.1:"), "{line}");
         Server { process, url, agent: agent(), token: None }
+    }
+
+    /// Starts the service on a store in a folder of its own.
+    pub fn alone(more: &[&str]) -> (tempfile::TempDir, Server) {
+        let dir = tempfile::tempdir().unwrap();
+        let place = in_folder(dir.path());
+        let service = Server::start(&[&place[0], &place[1]], more);
+        (dir, service)
     }
 
     /// Starts a worker without a door.
@@ -136,12 +154,10 @@ impl Server {
         ended
     }
 
-    /// A file of a job.
     pub fn file(&self, job: &str, name: &str) -> Vec<u8> {
         self.file_of(&format!("{job}/files/{name}"))
     }
 
-    /// A file at an address.
     pub fn file_of(&self, path: &str) -> Vec<u8> {
         self.get(path).expect(200).body
     }
@@ -207,11 +223,7 @@ impl Server {
     /// Asks the process to stop, and waits for it.
     pub fn stop(&mut self) {
         self.signal("-TERM");
-        let begun = Instant::now();
-        while self.process.try_wait().unwrap().is_none() {
-            assert!(begun.elapsed() < Duration::from_secs(30), "it does not stop");
-            std::thread::sleep(Duration::from_millis(20));
-        }
+        wait("it does not stop", || self.process.try_wait().unwrap().is_some());
     }
 }
 

@@ -1,12 +1,13 @@
 //! A Slurm cluster of one node, of a test's own, where the machine has the programs for one.
 
 use std::fs;
-use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
+
+use crate::support::installed::{end, free_ports, is_root, or_skipped};
 
 /// Longest wait until the node is ready.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -18,16 +19,9 @@ pub struct Slurm {
 }
 
 impl Slurm {
-    /// Starts one; `None`, with the reason printed, where that cannot be. A machine that is meant to have it says so in
-    /// `PERILIFE_TESTS_NEED`, and the test fails there.
+    /// Starts one, where the machine has it.
     pub fn start() -> Option<Slurm> {
-        let started = Self::try_start();
-        if let Err(why) = &started {
-            let needed = std::env::var("PERILIFE_TESTS_NEED").is_ok_and(|needs| needs.contains("slurm"));
-            assert!(!needed, "Slurm is needed here: {why}");
-            println!("skipped with Slurm: {why}");
-        }
-        started.ok()
+        or_skipped("slurm", Self::try_start())
     }
 
     fn try_start() -> Result<Slurm, String> {
@@ -102,16 +96,7 @@ impl Slurm {
 impl Drop for Slurm {
     fn drop(&mut self) {
         // The node before the controller, munged last: in the other order they wait for each other.
-        for daemon in self.daemons.iter_mut().rev() {
-            let _ = Command::new("kill").args(["-TERM", &daemon.id().to_string()]).status();
-            let begun = Instant::now();
-            while daemon.try_wait().is_ok_and(|ended| ended.is_none()) {
-                if begun.elapsed() > Duration::from_secs(10) {
-                    let _ = daemon.kill();
-                }
-                std::thread::sleep(Duration::from_millis(50));
-            }
-        }
+        self.daemons.iter_mut().rev().for_each(|daemon| end(daemon, Duration::from_secs(10)));
     }
 }
 
@@ -119,12 +104,8 @@ impl Drop for Slurm {
 const NODE: &str = "perilife";
 
 fn conf(here: &Path) -> Result<String, String> {
-    let mut ports = Vec::new();
-    for _ in 0..2 {
-        ports.push(TcpListener::bind("127.0.0.1:0").map_err(|error| error.to_string())?);
-    }
-    let port = |i: usize| ports[i].local_addr().map(|address| address.port()).map_err(|error| error.to_string());
-    let (controller, node, cores) = (port(0)?, port(1)?, std::thread::available_parallelism().map_or(1, usize::from));
+    let [controller, node] = free_ports();
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let here = here.display();
     let host = fs::read_to_string("/proc/sys/kernel/hostname").map_err(|error| error.to_string())?;
     Ok(format!(
@@ -157,9 +138,4 @@ fn wait(is_so: impl Fn() -> bool) -> Result<(), ()> {
 fn set_mode(path: &Path, mode: u32) -> Result<(), String> {
     use std::os::unix::fs::PermissionsExt;
     fs::set_permissions(path, fs::Permissions::from_mode(mode)).map_err(|error| error.to_string())
-}
-
-fn is_root() -> bool {
-    use std::os::unix::fs::MetadataExt;
-    Path::new("/proc/self").metadata().is_ok_and(|process| process.uid() == 0)
 }

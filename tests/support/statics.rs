@@ -37,7 +37,6 @@ pub fn material(kind: BondLawKind, plane: Plane) -> Material {
     Material::elastic(200e9, limit * share, plane)
 }
 
-/// The body of a case.
 pub fn body(case: &Case) -> Body {
     let model = case.points();
     model.body(&case.specimen, &case.material).unwrap()

@@ -12,6 +12,7 @@ use perilife_calibration::results::record;
 use perilife_growth::predict::Silent;
 
 use crate::support::fatigue_test::{calibration, lengths, readings};
+use crate::support::rows::{assert_says, rows};
 
 const C: f64 = 1e-8;
 const M: f64 = 3.0;
@@ -21,7 +22,7 @@ fn plain(step: f64) -> Vec<(f64, f64)> {
     readings(C, M, &lengths(12.0, 30.0, step), |_| 5.4, |_| 1.0)
 }
 
-fn rows(readings: &[(f64, f64)], more: impl Fn(usize) -> String) -> String {
+fn lines_of(readings: &[(f64, f64)], more: impl Fn(usize) -> String) -> String {
     readings.iter().enumerate().map(|(i, (n, a))| format!("{n},{a:.4}{}\n", more(i))).collect()
 }
 
@@ -60,9 +61,10 @@ fn k_of_every_reading_is_that_of_its_own_load() {
         let with = |unit: &str, per_kn: f64| {
             let load =
                 |i: usize| format!(",{:.9},{:.9}", force(lengths[i]) / 0.9 * per_kn, force(lengths[i]) / 0.9 * 0.1 * per_kn);
-            format!("cycles,crack_length_mm,force max ({unit}),force min ({unit})\n{}", rows(&made, load))
+            format!("cycles,crack_length_mm,force max ({unit}),force min ({unit})\n{}", lines_of(&made, load))
         };
-        let ranges = format!("cycles,crack_length_mm,force_range_kn\n{}", rows(&made, |i| format!(",{:.9}", force(lengths[i]))));
+        let ranges =
+            format!("cycles,crack_length_mm,force_range_kn\n{}", lines_of(&made, |i| format!(",{:.9}", force(lengths[i]))));
         is_the_law(&format!("{name}, ranges"), &fitted(&ranges, ""), M);
         // Units do not know how the load changes.
         let units = [("kN", 1.0), ("N", 1e3), ("lbf", 1e3 / 4.448_221_615_260_5), ("kgf", 1e3 / 9.806_65)];
@@ -91,13 +93,11 @@ fn specimens_of_different_loads_have_one_law() {
 #[test]
 fn loads_without_columns_are_told_by_the_rates() {
     let made = readings(C, M, &lengths(12.0, 30.0, 0.5), |a| if a > 21.0 { 6.48 } else { 5.4 }, |_| 1.0);
-    let fit = fitted(&format!("cycles,crack_length_mm\n{}", rows(&made, |_| String::new())), "");
+    let fit = fitted(&format!("cycles,crack_length_mm\n{}", lines_of(&made, |_| String::new())), "");
     let warning = fit.warnings.iter().find(|line| line.contains("rate changes in specimen")).unwrap();
     // 21 mm is the 19th reading, on line 20; a fifth more force is 1.728 times the rate.
-    for words in ["test.csv: lines 20 to 21: ", "above 21 mm it is 1.73 times", "force_max_kn"] {
-        assert!(warning.contains(words), "{words} in {warning}");
-    }
-    let clean = fitted(&format!("cycles,crack_length_mm\n{}", rows(&plain(0.5), |_| String::new())), "");
+    assert_says(warning, &["test.csv: lines 20 to 21: ", "above 21 mm it is 1.73 times", "force_max_kn"]);
+    let clean = fitted(&format!("cycles,crack_length_mm\n{}", lines_of(&plain(0.5), |_| String::new())), "");
     assert!(clean.warnings.is_empty(), "{:?}", clean.warnings);
 }
 
@@ -114,7 +114,7 @@ const STALLS: [Stall; 3] = [
 fn readings_that_do_not_belong_are_named_and_left_out() {
     for (name, slow, lines) in STALLS {
         let made = readings(C, M, &lengths(12.0, 30.0, 0.5), |_| 5.4, slow);
-        let csv = format!("cycles,crack_length_mm\n{}", rows(&made, |_| String::new()));
+        let csv = format!("cycles,crack_length_mm\n{}", lines_of(&made, |_| String::new()));
         let fit = fitted(&csv, "");
         let warning = fit.warnings.iter().find(|line| line.contains("outliers")).unwrap_or_else(|| panic!("{name}"));
         assert!(warning.contains(lines), "{name}: {lines} in {warning}");
@@ -142,7 +142,7 @@ fn readings_that_do_not_belong_are_named_and_left_out() {
 #[test]
 fn what_is_left_out_stands_in_every_result() {
     let made = readings(C, M, &lengths(12.0, 30.0, 0.5), |_| 5.4, STALLS[1].1);
-    let csv = format!("cycles,crack_length_mm\n{}", rows(&made, |_| String::new()));
+    let csv = format!("cycles,crack_length_mm\n{}", lines_of(&made, |_| String::new()));
     let (from, to) = (made[16].0, made[18].0);
     let keys = format!("leave_out = [{{ specimen = \"test\", from_cycles = {from}, to_cycles = {to}, reason = \"overload\" }}]");
     let case = case(&csv, &keys).unwrap();
@@ -160,7 +160,7 @@ fn what_is_left_out_stands_in_every_result() {
 #[test]
 fn rows_are_left_out_by_line_value_and_reason() {
     let good = plain(0.5);
-    let text = rows(&good, |_| String::new());
+    let text = lines_of(&good, |_| String::new());
     let mut lines: Vec<&str> = std::iter::once("cycles,crack_length_mm").chain(text.lines()).collect();
     for (line, bad) in
         [(5, "abc,13.1"), (9, "12,15.1"), (12, "load cell was changed here; then the test went on, as agreed with the customer")]
@@ -192,38 +192,11 @@ fn text_with_header(rows: &str) -> String {
 
 #[test]
 fn broken_windows_are_refused() {
-    let csv = format!("cycles,crack_length_mm\n{}", rows(&plain(0.5), |_| String::new()));
-    let window = |keys: &str| format!("leave_out = [{{ {keys} }}]");
-    let broken = [
-        (
-            "another specimen",
-            window("specimen = \"B\", from_cycles = 0, to_cycles = 1e4, reason = \"x\""),
-            "specimen = \"B\": is not a specimen",
-        ),
-        ("no reason", window("from_cycles = 0, to_cycles = 1e4"), "reason: is missing"),
-        ("an empty reason", window("from_cycles = 0, to_cycles = 1e4, reason = \" \""), "has an empty reason"),
-        ("half a window", window("from_cycles = 0, reason = \"x\""), "is neither a row nor cycles"),
-        ("a row and cycles", window("line = 2, from_cycles = 0, to_cycles = 1, reason = \"x\""), "is neither a row nor cycles"),
-        (
-            "no such line",
-            window("line = 999, value = \"0\", reason = \"x\""),
-            "is not a cell of line 999 of test.csv, which has no row",
-        ),
-        ("another value", window("line = 2, value = \"7x\", reason = \"x\""), "is not a cell of line 2"),
-        ("no value", window("line = 2, reason = \"x\""), "is not a cell of line 2"),
-        ("another file", window("file = \"b.csv\", line = 2, value = \"0\", reason = \"x\""), "not one of measured.files"),
-        ("the wrong way", window("from_cycles = 1e4, to_cycles = 0, reason = \"x\""), "is not above from_cycles = 10000"),
-        ("beyond it", window("from_cycles = 1e8, to_cycles = 2e8, reason = \"x\""), "contains no reading of specimen test"),
-        ("everything", window("from_cycles = 0, to_cycles = 1e9, reason = \"x\""), "leaves 0 readings"),
-        ("nearly everything", window("from_cycles = 1e5, to_cycles = 1e9, reason = \"x\""), "leaves 2 readings"),
-    ];
-    for (name, keys, words) in broken {
-        let error = case(&csv, &keys).unwrap_err();
-        assert_eq!(error.exit_code(), 2, "{name}");
-        assert!(
-            error.to_string().contains(words) && error.to_string().contains("measured.leave_out"),
-            "{name}: {words} in {error}"
-        );
+    let csv = format!("cycles,crack_length_mm\n{}", lines_of(&plain(0.5), |_| String::new()));
+    for [keys, words] in rows::<Vec<[String; 2]>>("belonging", "windows") {
+        let error = case(&csv, &format!("leave_out = [{{ {keys} }}]")).unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{keys}");
+        assert_says(&format!("{keys}: {error}"), &["measured.leave_out", &words]);
     }
 }
 
@@ -232,7 +205,7 @@ fn broken_windows_are_refused() {
 fn misfit_is_told_at_both_ends() {
     let fit = |m: f64| {
         let made = readings(C * 10_f64.powf(M - m), m, &lengths(12.0, 30.0, 0.5), |_| 5.4, |_| 1.0);
-        let csv = format!("cycles,crack_length_mm\n{}", rows(&made, |_| String::new()));
+        let csv = format!("cycles,crack_length_mm\n{}", lines_of(&made, |_| String::new()));
         let files = BTreeMap::from([("test.csv".to_owned(), csv.into_bytes())]);
         let text = calibration("test.csv", "") + "[fit]\nparameters = [\"a\"]\np = 3.0\n";
         let case = CalibrationCase::from_text(&text, "case", Folder::at_hand(files)).unwrap();
@@ -255,7 +228,7 @@ fn misfit_is_told_at_both_ends() {
 
 #[test]
 fn a_law_that_no_metal_has_is_refused_by_name() {
-    let csv = format!("cycles,crack_length_mm\n{}", rows(&plain(0.5), |_| String::new()));
+    let csv = format!("cycles,crack_length_mm\n{}", lines_of(&plain(0.5), |_| String::new()));
     let slips =
         [("as it was", csv.clone(), true), ("single cycles called millions", csv.replace("cycles,", "megacycles,"), false)];
     for (name, csv, is_metal) in slips {

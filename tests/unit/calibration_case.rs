@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::Path;
 
+use crate::support::desk::desk;
 use crate::support::fits::report;
+use crate::support::rows::{assert_refusal, rows};
 use perilife_base::input::Folder;
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_calibration::case::CalibrationCase;
@@ -12,35 +14,14 @@ use perilife_calibration::fit::{Bonds, Fit, FitTask, fit};
 use perilife_calibration::power_law::PowerLaw;
 use perilife_calibration::results::{fit_curves, record};
 use perilife_growth::case::record::FittedRecord;
-use tempfile::tempdir;
 
-const GOOD: &str = r#"[measured]
-files = ["curves.csv"]
-from_crack_length_mm = 9.0
-to_crack_length_mm = 13.0
-[specimen]
-kind = "middle_tension"
-width_mm = 152.4
-length_mm = 300.0
-thickness_mm = 2.54
-crack_length_mm = 9.0
-[material]
-name = "al2024-t3"
-[loading]
-kind = "constant_amplitude"
-stress_range_mpa = 48.28
-stress_ratio = 0.2
-[fit]
-parameters = ["a", "p"]
-"#;
+const GOOD: &str = include_str!("../reference/cases/calibration_case.toml");
 
 const CURVES: &str = "specimen,cycles,crack_length_mm\nA,100,8\nA,1000,9\nA,2000,10\nA,2900,11\nA,3700,12\nA,4400,13\nA,5000,14\n\
                       B,0,8.5\nB,500,9\nB,1600,10\nB,2600,11\nB,3450,12\nB,4200,13\n";
 
 fn read(text: &str, overrides: &[&str]) -> perilife_base::error::Result<CalibrationCase> {
-    let folder = tempdir().unwrap();
-    fs::write(folder.path().join("curves.csv"), CURVES).unwrap();
-    fs::write(folder.path().join("alloy.toml"), text).unwrap();
+    let folder = desk(&[("curves.csv", &CURVES), ("alloy.toml", &text)]);
     let overrides: Vec<String> = overrides.iter().map(|text| (*text).to_owned()).collect();
     CalibrationCase::from_file(&folder.path().join("alloy.toml"), &overrides)
 }
@@ -109,106 +90,22 @@ fn results_have_every_promised_key_and_read_back() {
 
 #[test]
 fn broken_calibration_files_say_what_would_be_right() {
-    let swap = |from: &str, to: &str| {
-        assert!(GOOD.contains(from), "{from}");
-        GOOD.replace(from, to)
-    };
-    let broken = [
-        (
-            "no section",
-            GOOD.split_once("[specimen]").map(|(_, rest)| format!("[specimen]{rest}")).unwrap(),
-            "measured: is missing",
-        ),
-        (
-            "unknown key",
-            swap("from_crack", "from_crak"),
-            "measured.from_crak_length_mm = 9.0: unknown key; did you mean from_crack_length_mm?",
-        ),
-        ("no files", swap("[\"curves.csv\"]", "[]"), "measured.files = []: has no file"),
-        ("files of a wrong kind", swap("[\"curves.csv\"]", "\"curves.csv\""), "measured.files"),
-        (
-            "window the wrong way",
-            swap("to_crack_length_mm = 13.0", "to_crack_length_mm = 8.0"),
-            "to_crack_length_mm = 8: is not above from_crack_length_mm = 9",
-        ),
-        (
-            "window too narrow",
-            swap("to_crack_length_mm = 13.0", "to_crack_length_mm = 11.0"),
-            "leaves 3 of 7 readings of specimen A",
-        ),
-        (
-            "window not a number",
-            swap("to_crack_length_mm = 13.0", "to_crack_length_mm = nan"),
-            "to_crack_length_mm = NaN: is not a finite number",
-        ),
-        (
-            "model after the first reading",
-            swap("crack_length_mm = 9.0\n[material]", "crack_length_mm = 9.5\n[material]"),
-            "specimen.crack_length_mm = 9.5: exceeds the first reading of specimen A, 9 mm",
-        ),
-        (
-            "panel too narrow",
-            swap("width_mm = 152.4", "width_mm = 26.0"),
-            "curves.csv:7: crack_length_mm = 13: is outside the specimen, whose half width is 13 mm",
-        ),
-        ("unknown parameter", swap("[\"a\", \"p\"]", "[\"a\", \"q\"]"), "use one of: a, p"),
-        ("p alone", swap("[\"a\", \"p\"]", "[\"p\"]"), "fit.parameters = [\"p\"]: does not contain a"),
-        ("p missing", swap("[\"a\", \"p\"]", "[\"a\"]"), "fit.p: is missing"),
-        ("p twice", swap("[\"a\", \"p\"]", "[\"a\", \"p\"]\np = 3.0"), "fit.p = 3: is both given and fitted"),
-        (
-            "law given",
-            format!("{GOOD}[fatigue]\na = 1.0\np = 3.0\nhorizon_mm = 3.0\n"),
-            "fatigue: gives the law that the calibration fits",
-        ),
-        (
-            "another mean-stress law",
-            format!("{GOOD}[fatigue]\nwalker_gamma = 0.6\n"),
-            "fatigue.walker_gamma = 0.6: does not apply to a fit at one R",
-        ),
-        (
-            "rate of bonds by their strain",
-            format!("{GOOD}[fatigue]\ndriver = \"bond_strain\"\n"),
-            "fatigue.driver = \"bond_strain\": does not apply to a calibration, which fits the growth rate over K; \
-             use driver = \"tip_field\"",
-        ),
-        (
-            "fatigue bonds where no tip is",
-            format!("{GOOD}[fatigue]\nageing = \"everywhere\"\n"),
-            "fatigue.driver = \"bond_strain\": does not apply to a calibration",
-        ),
-        (
-            "short panel by hand calculation",
-            format!("{}[model]\nmethod = \"handbook\"\n", swap("length_mm = 300.0", "length_mm = 152.4")),
-            "model.method = \"handbook\": has no K(a) for this specimen",
-        ),
-        (
-            "short panel, whose range of K only a run shows",
-            swap("length_mm = 300.0", "length_mm = 152.4").replace("[fit]\n", "[fit]\nrecord = \"other.toml\"\n"),
-            "fit.record = \"other.toml\": replaces p if ΔK varies too little, which is known only after a run",
-        ),
-        ("unknown unit", swap("[specimen]", "length_unit = \"furlong\"\n[specimen]"), "use one of: mm, inch, m"),
-        (
-            "unit against the header",
-            swap("[specimen]", "length_unit = \"inch\"\n[specimen]"),
-            "curves.csv:1: header = crack_length_mm: is in mm, but measured.length_unit says inch",
-        ),
-    ];
-    for (name, text, words) in broken {
+    for (name, swaps, words) in rows::<Vec<(String, Vec<String>, String)>>("calibration_case", "broken") {
+        let text = swaps.chunks(2).fold(GOOD.to_owned(), |text, swap| {
+            assert!(text.contains(&swap[0]), "{name}: {}", swap[0]);
+            if swap[0].is_empty() { text + &swap[1] } else { text.replace(&swap[0], &swap[1]) }
+        });
         let error = read(&text, &[]).unwrap_err();
         assert_eq!(error.exit_code(), 2, "{name}: {error}");
-        assert!(error.to_string().contains(words), "{name}: {words} in {error}");
+        assert!(error.to_string().contains(&words), "{name}: {words} in {error}");
         assert!(error.to_string().contains("alloy.toml") || error.to_string().contains("curves.csv"), "{name}: {error}");
     }
     // A threshold is allowed, and said to belong to the cases as well; gamma = 1 is what a record means anyway.
     let warned = read(&format!("{GOOD}[fatigue]\nwalker_gamma = 1.0\ndelta_k_threshold_mpa_sqrt_m = 2.0\n"), &[]).unwrap();
     assert!(warned.warnings.iter().any(|line| line.contains("has no effect on the fit")), "{:?}", warned.warnings);
-    let error = read(&swap_file("elsewhere.csv"), &[]).unwrap_err();
+    let error = read(&GOOD.replace("curves.csv", "elsewhere.csv"), &[]).unwrap_err();
     assert_eq!(error.exit_code(), 4);
     assert!(error.to_string().contains("elsewhere.csv: cannot read"), "{error}");
-}
-
-fn swap_file(file: &str) -> String {
-    GOOD.replace("curves.csv", file)
 }
 
 #[test]
@@ -232,11 +129,9 @@ fn the_criterion_is_a_choice() {
         assert_eq!(calibration.criterion, criterion);
         assert_eq!(report(&calibration, &fitted(&calibration), 0.0)["criterion"], criterion.name());
     }
-    let error = read(GOOD, &["fit.criterion=least_effort"]).unwrap_err().to_string();
-    assert!(error.contains("least_effort") && error.contains("both_ends, first_reading"), "{error}");
+    assert_refusal(read(GOOD, &["fit.criterion=least_effort"]), &["least_effort", "both_ends, first_reading"]);
 }
 
-/// A calibration whose readings are at hand is the one of the same readings in a file.
 #[test]
 fn readings_at_hand_are_those_of_the_file() {
     let curves = || Folder::at_hand([("curves.csv".to_owned(), CURVES.as_bytes().to_vec())]);
@@ -247,8 +142,7 @@ fn readings_at_hand_are_those_of_the_file() {
     };
     assert_eq!(readings(&at_hand), readings(&from_file));
     let two = GOOD.replace("[\"curves.csv\"]", "[\"curves.csv\", \"more.csv\"]");
-    let error = CalibrationCase::from_text(&two, "alloy", curves()).unwrap_err().to_string();
-    assert!(error.contains("\"more.csv\"") && error.contains("came with curves.csv"), "{error}");
+    assert_refusal(CalibrationCase::from_text(&two, "alloy", curves()), &["\"more.csv\"", "came with curves.csv"]);
 }
 
 #[test]
@@ -260,9 +154,7 @@ fn readings_say_load_and_first_crack_length_where_the_file_does_not() {
             0 => format!("{},stress_max_mpa,stress_ratio\n", line.replace("crack_length_mm", head)),
             _ => format!("{line},{},0.2\n", if line.starts_with('B') { of_b } else { "60.35" }),
         });
-        let folder = tempdir().unwrap();
-        fs::write(folder.path().join("curves.csv"), rows.collect::<String>()).unwrap();
-        fs::write(folder.path().join("alloy.toml"), text).unwrap();
+        let folder = desk(&[("curves.csv", &rows.collect::<String>()), ("alloy.toml", &text)]);
         CalibrationCase::from_file(&folder.path().join("alloy.toml"), &[])
     };
     let load = "loading: stress_max_mpa = 60.35, stress_ratio = 0.2, from the readings";
@@ -290,26 +182,22 @@ fn readings_say_load_and_first_crack_length_where_the_file_does_not() {
     }
     // Half of the length or all of it: nothing says.
     for kind in ["middle_tension", "cruciform"] {
-        let error = read(&open.replace("middle_tension", kind), "crack_length_mm", "60.35").unwrap_err().to_string();
-        assert!(error.contains("specimen.crack_length_mm: is missing"), "{kind}: {error}");
+        assert_refusal(
+            read(&open.replace("middle_tension", kind), "crack_length_mm", "60.35"),
+            &["specimen.crack_length_mm: is missing"],
+        );
     }
-    let error = read(&edge, "crack_length_mm", "50").unwrap_err().to_string();
-    assert!(error.contains("loading: is missing"), "{error}");
+    assert_refusal(read(&edge, "crack_length_mm", "50"), &["loading: is missing"]);
     // What the readings could give is missing because they are not understood: that is said.
-    let error = read(&edge, "crack length", "60.35").unwrap_err().to_string();
-    assert!(error.contains("crack length") && error.contains("measured.length_unit"), "{error}");
+    assert_refusal(read(&edge, "crack length", "60.35"), &["crack length", "measured.length_unit"]);
 }
 
 #[test]
 fn a_load_of_the_case_that_is_not_that_of_its_readings_is_told() {
     let read = |head: &str, load: &str, text: &str| {
-        let rows = CURVES
-            .lines()
-            .enumerate()
-            .map(|(i, line)| if i == 0 { format!("{line},{head}\n") } else { format!("{line},{load}\n") });
-        let folder = tempdir().unwrap();
-        fs::write(folder.path().join("curves.csv"), rows.collect::<String>()).unwrap();
-        fs::write(folder.path().join("alloy.toml"), text).unwrap();
+        let line = |(i, line): (usize, &str)| if i == 0 { format!("{line},{head}\n") } else { format!("{line},{load}\n") };
+        let curves: String = CURVES.lines().enumerate().map(line).collect();
+        let folder = desk(&[("curves.csv", &curves), ("alloy.toml", &text)]);
         CalibrationCase::from_file(&folder.path().join("alloy.toml"), &[])
     };
     for (load, words) in
@@ -321,6 +209,6 @@ fn a_load_of_the_case_that_is_not_that_of_its_readings_is_told() {
     }
     // A column that may be the load is named where a load is missing.
     let open = GOOD.replace("[loading]\nkind = \"constant_amplitude\"\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n", "");
-    let error = read("P (kN)", "20", &open).unwrap_err().to_string();
-    assert!(error.contains("loading: is missing") && error.contains("ignored columns: P (kN)"), "{error}");
+    assert_ne!(open, GOOD);
+    assert_refusal(read("P (kN)", "20", &open), &["loading: is missing", "ignored columns: P (kN)"]);
 }

@@ -5,6 +5,8 @@ use std::path::Path;
 use perilife_growth::case::{Case, Method};
 use perilife_growth::predict::tip_factors::stress_intensity;
 
+use crate::support::rows::rows;
+
 const REST: &str = "[material]\nyoungs_modulus_gpa = 70\npoisson_ratio = 0.3\nplane = \"stress\"\n\
                     [loading]\nkind = \"constant_amplitude\"\nstress_max_mpa = 60\nstress_ratio = 0.1\n\
                     [fatigue]\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3\n";
@@ -52,48 +54,14 @@ fn formulas_stand_beside_the_loads_that_they_know() {
 
 #[test]
 fn no_more_of_a_model_than_a_scene_needs() {
-    use Method::{ElementFreeGalerkin, Handbook, Peridynamics};
-    const DOUBLE: &str = "kind = \"double_edge_tension\"\ncrack_length_mm = 10";
-    const AT_HOLE: &str = "kind = \"crack_at_hole\"\nhole_diameter_mm = 6\ncrack_length_mm = 1";
-    const SLANT: &str = "kind = \"plate\"\ncracks = [{ from_mm = [-5, -3], to_mm = [5, 3] }]";
-    const SLOT: &str = "kind = \"plate\"\nnotches = [{ from_mm = [-50, 0], to_mm = [-30, 0], width_mm = 2 }]";
-    let rows: &[(&str, &[&str], Method, &str)] = &[
-        (MIDDLE, &[], Handbook, "Feddersen"),
-        (MIDDLE, &["model.tolerance_percent=0.5"], ElementFreeGalerkin, "0.5 %"),
-        (MIDDLE, &["output.paraview=true"], ElementFreeGalerkin, "no fields for output.paraview"),
-        (MIDDLE, &["specimen.crack_length_mm=48"], ElementFreeGalerkin, "not valid at this crack length (0.3 % for 2a/W ≤ 0.7"),
-        (MIDDLE, &["specimen.length_mm=110"], ElementFreeGalerkin, "no handbook solution"),
-        (DOUBLE, &[], ElementFreeGalerkin, "K may be off by "),
-        (DOUBLE, &[], ElementFreeGalerkin, "Tada double edge"),
-        (
-            AT_HOLE,
-            &[],
-            ElementFreeGalerkin,
-            "Newman and Shah, one crack at a hole: K may be off by 3.5 % (10.5 % of life at m = 3); target ",
-        ),
-        (DOUBLE, &["model.tolerance_percent=5"], Handbook, "Tada double edge"),
-        // The error of a life goes with the exponent of its law.
-        (DOUBLE, &["fatigue.paris_m=2"], Handbook, "Tada double edge"),
-        (MIDDLE, &["fatigue.paris_m=8"], ElementFreeGalerkin, "K may be off by 0.3 % (2.4 % of life at m = 8); target 2 %"),
-        (AT_HOLES, &["model.tolerance_percent=5"], Handbook, "Newman"),
-        (AT_HOLES, &["model.tolerance_percent=5", "loading.edge_bending_ratio=1"], ElementFreeGalerkin, "no handbook solution"),
-        (AT_HOLES, &["model.tolerance_percent=5", "loading.crack_pressure_mpa=10"], ElementFreeGalerkin, "crack-face pressure"),
-        (SLANT, &[], ElementFreeGalerkin, "no handbook solution"),
-        (SLANT, &["model.spacing_mm=1"], Peridynamics, "model.spacing_mm"),
-        (SLANT, &["model.bond_law=state_based"], Peridynamics, "model.bond_law"),
-        (SLANT, &["fatigue.driver=bond_strain"], Peridynamics, "fatigue.driver"),
-        (SLANT, &["fatigue.ageing=everywhere"], Peridynamics, "fatigue.ageing"),
-        (SLANT, &["fatigue.driver=tip_field"], ElementFreeGalerkin, "no handbook solution"),
-        (MIDDLE, &["model.nodes=600"], ElementFreeGalerkin, "model.nodes"),
-        (SLOT, &[], Peridynamics, "slot"),
-    ];
-    for (specimen, set, method, why) in rows {
-        let by_choice = case(specimen, set);
-        assert_eq!(by_choice.model.method(), *method, "{specimen} {set:?}");
-        assert!(by_choice.chosen.as_ref().is_some_and(|words| words.contains(why)), "{set:?}: {:?}", by_choice.chosen);
+    for (specimen, set, method, why) in rows::<Vec<(String, Vec<String>, String, String)>>("choose", "chosen") {
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let by_choice = case(&specimen, &set);
+        assert_eq!(by_choice.model.method().name(), method, "{specimen} {set:?}");
+        assert!(by_choice.chosen.as_ref().is_some_and(|words| words.contains(&why)), "{set:?}: {:?}", by_choice.chosen);
         // By its name it is the same model, and nothing was chosen.
         let by_name = format!("model.method={method}");
-        let named = case(specimen, &[&[by_name.as_str()], *set].concat());
+        let named = case(&specimen, &[&[by_name.as_str()], &set[..]].concat());
         assert!(named.chosen.is_none() && named.model == by_choice.model, "{set:?}");
     }
 }

@@ -13,6 +13,8 @@ use perilife_runner::catalogue;
 use perilife_runner::{Task, Wanted, of_prediction};
 use tempfile::tempdir;
 
+use crate::support::desk::json;
+use crate::support::rows::assert_says;
 use crate::support::{made_up_case, made_up_run};
 use crate::unit::house;
 
@@ -41,7 +43,7 @@ fn a_run_leaves_all_its_files() {
     for file in files.into_iter().chain(["paraview/plate_0002.vti", ".perilife"]) {
         assert!(fs::metadata(out.join(file)).unwrap().len() > 0, "{file}");
     }
-    let result: serde_json::Value = serde_json::from_str(&fs::read_to_string(out.join("result.json")).unwrap()).unwrap();
+    let result = json(out.join("result.json"));
     assert_eq!(result["points"], made_up_run::prediction(0.0).figures.points);
     case.output.tables_only = true;
     keep(&case, made_up_run::prediction(0.0), &out).unwrap();
@@ -103,9 +105,7 @@ fn an_error_shows_its_line_where_there_is_one() {
         more: Vec::new(),
     };
     let shown = with_source_line(&error(2)).unwrap();
-    for words in ["case.toml", "width_mm = -1", "specimen.width_mm = -1: must be above zero", "give a width"] {
-        assert!(shown.contains(words), "{words} in {shown}");
-    }
+    assert_says(&shown, &["case.toml", "width_mm = -1", "specimen.width_mm = -1: must be above zero", "give a width"]);
     // A line the file does not have (it was changed meanwhile) and a file that has gone give the plain words instead.
     assert!(with_source_line(&error(0)).is_none() && with_source_line(&error(99)).is_none());
     assert!(with_source_line(&InputError { file: Some("gone.toml".into()), ..error(2) }).is_none());

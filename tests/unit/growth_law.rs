@@ -12,6 +12,8 @@ use perilife_laws::growth_law::table::{Curve, Table};
 use perilife_laws::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind};
 use perilife_measured::rates::RateFile;
 
+use crate::support::rows::{assert_refusal, assert_says, rows};
+
 fn near(a: f64, b: f64, relative: f64) {
     assert!((a / b - 1.0).abs() < relative, "{a} against {b}");
 }
@@ -245,9 +247,7 @@ fn beyond_a_table() {
         let set = [&*format!("model.method={method}"), "model.spacing_mm=1.5"];
         let error = predict(&read_with(short, TABLE, &set).unwrap(), &Silent).unwrap_err();
         assert_eq!(error.exit_code(), 2);
-        for words in ["growth_table", "18.0000 MPa√m", "at a crack length of", "held"] {
-            assert!(error.to_string().contains(words), "{words} in {error}");
-        }
+        assert_says(&error.to_string(), &["growth_table", "18.0000 MPa√m", "at a crack length of", "held"]);
         let held = read_with(short, &format!("{TABLE}growth_table_ends = \"held\"\n"), &set).unwrap();
         let run = predict(&held, &Silent).unwrap();
         assert!(run.warnings.iter().any(|line| line.contains("beyond the table of rates")), "{:?}", run.warnings);
@@ -256,44 +256,11 @@ fn beyond_a_table() {
 
 #[test]
 fn wrong_laws_are_refused() {
-    let twice = format!("{FORMAN}paris_c_mm_per_cycle = 1e-7\nparis_m = 3\n");
-    let two = format!("{FORMAN}nasgro_n = 3\n");
-    let ratios = "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,stress_ratio\n10,1e-4,0.3\n20,9e-4,0.3\n10,2e-4,0.5\n20,2e-3,0.5\n";
-    let rows: [(&str, &str, &[&str], &[&str]); 19] = [
-        (RATES, &twice, &[], &["fatigue.forman_c_mm_per_cycle", "conflicts with fatigue.paris_c_mm_per_cycle"]),
-        (RATES, &two, &[], &["fatigue.nasgro_n", "conflicts with"]),
-        (RATES, FORMAN, &["fatigue.driver=bond_strain"], &["fatigue.growth_law", "cannot drive bonds", "tip_field"]),
-        (RATES, FORMAN, &["fatigue.walker_gamma=0.5"], &["fatigue.walker_gamma", "forman"]),
-        (RATES, FORMAN, &["fatigue.forman_m=0.1"], &["fatigue.forman_m", "0.1"]),
-        (RATES, "forman_m = 3\n", &[], &["fatigue.forman_c_mm_per_cycle", "missing"]),
-        (RATES, "forman_m = 3\nforman_c_mm_per_cycle = 1e-5\n", &[], &["fatigue.k_c_mpa_sqrt_m", "missing", "toughness"]),
-        (RATES, NASGRO, &["fatigue.nasgro_alpha=4"], &["fatigue.nasgro_alpha", "between 1 and 3"]),
-        (RATES, NASGRO, &["loading.stress_ratio=-3"], &["loading.stress_ratio", "-2"]),
-        (RATES, NASGRO, &["fatigue.delta_k_threshold_mpa_sqrt_m=2"], &["fatigue.delta_k_threshold_mpa_sqrt_m", "own threshold"]),
-        (RATES, "growth_law = \"table\"\n", &[], &["fatigue.growth_table", "missing", "delta_k_mpa_sqrt_m"]),
-        (RATES, "growth_law = \"walker\"\nparis_c_mm_per_cycle = 1e-7\nparis_m = 3\n", &[], &["fatigue.walker_gamma", "missing"]),
-        (RATES, "growth_law = \"paris\"\na = 1\np = 3\nhorizon_mm = 1\n", &[], &["fatigue.a = 1", "growth_law = \"paris\""]),
-        (
-            RATES,
-            "paris_c_mm_per_cycle = 1e-7\nparis_m = 3\nk_c_mpa_sqrt_m = 3\n",
-            &[],
-            &["fatigue.k_c_mpa_sqrt_m", "not a constant"],
-        ),
-        (ratios, TABLE, &["loading.stress_ratio=0.6"], &["fatigue.growth_table", "rates.csv", "above 0.3 to 0.5", "held"]),
-        ("delta_k_mpa_sqrt_m,rate\n1,2\n", TABLE, &[], &["rates.csv", "da_dn_mm_per_cycle", "has no columns"]),
-        ("delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n9,2e-4\n", TABLE, &[], &["rates.csv:2", "da_dn_mm_per_cycle", "rise"]),
-        (
-            "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n12,x\n",
-            TABLE,
-            &[],
-            &["rates.csv:3", "da_dn_mm_per_cycle = x", "number"],
-        ),
-        ("delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n12,-1\n", TABLE, &[], &["rates.csv:3", "above zero"]),
-    ];
-    for (rates, text, set, words) in rows {
-        let error = read_with(rates, text, set).unwrap_err();
+    for (rates, text, set, words) in rows::<Vec<(String, String, Vec<String>, Vec<String>)>>("growth_law", "wrong") {
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let error = read_with(if rates.is_empty() { RATES } else { &rates }, &text, &set).unwrap_err();
         assert_eq!(error.exit_code(), 2, "{error}");
-        words.iter().for_each(|word| assert!(error.to_string().contains(word), "{word} in {error}"));
+        assert_says(&format!("{text}: {error}"), &words);
     }
     let missing = Case::from_toml(&format!("{PANEL}[fatigue]\n{TABLE}"), "panel", Path::new("/nowhere"), &[]).unwrap_err();
     assert_eq!(missing.exit_code(), 4, "{missing}");
@@ -329,7 +296,6 @@ fn wide_tables_of_other_programs_are_read() {
         ("a.lkpx", "<Material></Material>", "no table of rates"),
         ("a.lkpx", "<Material><a></b></Material>", "is not XML"),
     ] {
-        let error = read(name, text).unwrap_err().to_string();
-        assert!(error.contains(problem), "{error}");
+        assert_refusal(read(name, text), &[problem]);
     }
 }

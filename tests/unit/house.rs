@@ -10,7 +10,6 @@ use std::process::Command;
 
 use crate::support::shared::shared_root;
 
-/// Pins of the members.
 const PINS: &str = "tests/house.toml";
 /// Rise of the sum of the pins that needs no reason.
 const RISE: i64 = 300;

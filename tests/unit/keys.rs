@@ -11,6 +11,10 @@ use perilife_plate::specimen::SpecimenKind;
 use perilife_runner::catalogue;
 use toml::{Table, Value};
 
+use crate::support::written::hold;
+
+use crate::support::rows::assert_says;
+
 /// A value that a key takes.
 fn some(key: &Key, shape: Shape) -> Value {
     let middle = key.quantity.map_or(1.0, |q| if q.low <= 1.0 && q.high >= 1.0 { 1.0 } else { q.low });
@@ -97,7 +101,7 @@ fn every_key_refuses_values_of_another_sort_and_beyond_reason() {
             ] {
                 let wrong = with(&told, &key, Value::Float(value));
                 let is_said = wrong.len() == 1 && wrong[0].starts_with(&path) && wrong[0].contains(words);
-                assert!(is_said && wrong[0].contains("between"), "{words}: {wrong:?}");
+                assert!(is_said && wrong[0].contains("between"), "{path} = {value}: {words} in {wrong:?}");
                 rows += 1;
             }
         }
@@ -213,22 +217,11 @@ fn every_key_is_told_everywhere_with_its_twin() {
     }
 }
 
-/// Texts of the repository that are made of the keys; one that is old is written anew, and the test fails once.
 #[test]
 fn the_guide_and_the_stub_say_what_the_keys_say() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut old = Vec::new();
-    let mut hold = |name: &str, wanted: String| {
-        let path = root.join(name);
-        if std::fs::read_to_string(&path).unwrap_or_default() != wanted {
-            std::fs::write(&path, wanted).unwrap();
-            old.push(name.to_owned());
-        }
-    };
-    hold("src/python/perilife/sections.py", catalogue::stub());
     let head = "# Keys of input files\n\nWritten from the keys of the program (`perilife list keys`). A key in mm, MPa, GPa, N, kN or MPa√m has a twin in US units.\n\n";
-    hold("src/guide/keys.md", format!("{head}{}\n", catalogue::manual().trim_end()));
-    assert!(old.is_empty(), "written anew: {old:?}");
+    let page = format!("{head}{}\n", catalogue::manual().trim_end());
+    hold(&[("src/python/perilife/sections.py", &catalogue::stub()), ("src/guide/keys.md", &page)]);
 }
 
 #[test]
@@ -240,14 +233,15 @@ fn all_mistakes_of_a_file_are_told_at_once() {
     assert_eq!(input.more.len(), 3, "{error}");
     let message = error.to_string();
     assert!(message.starts_with("4 mistakes\n1. "), "{message}");
-    for words in [
-        "did you mean width_mm?",
-        "2. specimen.length_mm",
-        "3. loading.stress_ratio = \"low\": is not a number",
-        "4. stop.cycles_max",
-    ] {
-        assert!(message.contains(words), "{words}: {message}");
-    }
+    assert_says(
+        &message,
+        &[
+            "did you mean width_mm?",
+            "2. specimen.length_mm",
+            "3. loading.stress_ratio = \"low\": is not a number",
+            "4. stop.cycles_max",
+        ],
+    );
     let lines: Vec<_> = input.clone().each().iter().map(|one| one.line).collect();
     assert_eq!(lines, [Some(3), Some(4), Some(11), Some(13)]);
 }

@@ -7,6 +7,8 @@ use perilife_growth::case::Case;
 use perilife_scenes::Scene;
 use perilife_study::stability::SWEEPS;
 
+use crate::support::rows::assert_refusal;
+
 /// Relative distance from a boundary at which a case lies clearly on one side.
 const ASIDE: f64 = 0.01;
 
@@ -40,8 +42,7 @@ fn a_broken_table_is_refused() {
         (format!("{head}\na,b,c,true,1,2,3\n"), "7 fields"),
         (format!("{head}\na,b,c,true,x,2,3,0.1.0,2026-01-01\n"), "invalid float"),
     ] {
-        let error = limits::parse(&broken).unwrap_err().to_string();
-        assert!(error.contains(words), "{error}");
+        assert_refusal(limits::parse(&broken), &[words]);
     }
 }
 

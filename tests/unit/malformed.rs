@@ -4,46 +4,24 @@
 use std::path::Path;
 
 use perilife_base::units::MM;
-use perilife_measured::{Import, parse};
-use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
+use perilife_measured::{Import, MeasuredCurve, parse};
+
+use crate::support::noise::Chance;
 
 /// How a table is written.
-#[derive(Debug, Clone)]
 struct Writing {
     separator: char,
     decimal: char,
     /// Sign between thousands of cycles.
     thousands: Option<char>,
-    /// Decimals of lengths.
-    decimals: usize,
-    /// Decimals of cycles.
-    cycle_decimals: usize,
-    header: usize,
-    preamble: bool,
-    units_row: bool,
-    mark: bool,
-    trailing: bool,
-    line_end: &'static str,
+    /// Decimals of lengths and of cycles.
+    decimals: [usize; 2],
+    /// Lines above the readings: a preamble, names, units.
+    head: Vec<Vec<&'static str>>,
     /// Other columns: a text, a number with three decimals.
     others: usize,
+    is_trailing: bool,
 }
-
-/// What happens to the file on its way.
-#[derive(Debug, Clone)]
-enum Damage {
-    None,
-    Cut(prop::sample::Index),
-    LineLost(prop::sample::Index),
-    LineTwice(prop::sample::Index),
-    CellLost(prop::sample::Index),
-    Separator(prop::sample::Index, char),
-    Word(prop::sample::Index),
-    Byte(prop::sample::Index, u8),
-}
-
-/// Readings: cycles, and crack length in units of its last decimal.
-type Readings = Vec<(u64, u64)>;
 
 const HEADERS: [[&str; 2]; 5] = [
     ["Cycles", "Crack length (mm)"],
@@ -53,248 +31,172 @@ const HEADERS: [[&str; 2]; 5] = [
     ["Zyklen", "a/mm"],
 ];
 
-fn writings() -> impl Strategy<Value = Writing> {
-    let signs = (
-        prop::sample::select(vec!['\t', ';', ',', '|']),
-        prop::sample::select(vec!['.', ',']),
-        prop::option::of(prop::sample::select(vec!['.', ',', ' ', '\'', '\u{a0}'])),
-        0_usize..5,
-        prop::sample::select(vec![0_usize, 0, 0, 1, 3]),
-    );
-    let form = (0..HEADERS.len(), any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>(), 0_usize..3);
-    let ends = prop::sample::select(vec!["\n", "\r\n", "\r"]);
-    (signs, form, ends).prop_map(|((separator, decimal, thousands, decimals, cycle_decimals), form, line_end)| {
-        let (header, preamble, units_row, mark, trailing, others) = form;
-        let thousands = thousands.filter(|sign| *sign != decimal);
-        Writing {
-            separator,
-            decimal,
-            thousands,
-            decimals,
-            cycle_decimals,
-            header,
-            preamble,
-            units_row,
-            mark,
-            trailing,
-            line_end,
-            others,
-        }
-    })
+fn writing(chance: &mut Chance) -> Writing {
+    let (decimal, others) = (chance.of(&['.', ',']), chance.below(3));
+    let thousands = chance.of(&[None, None, Some('.'), Some(','), Some(' '), Some('\''), Some('\u{a0}')]);
+    let names = [&chance.of(&HEADERS)[..], &["Remark", "Time (s)"][..others]].concat();
+    let units = [&["-", "mm"][..], &["", "s"][..others]].concat();
+    let preamble = [vec!["Crack growth test"], vec!["Specimen", "CT 12"]];
+    let [with_preamble, with_units] = [chance.below(2) * 2, chance.below(2)];
+    Writing {
+        separator: chance.of(&['\t', ';', ',', '|']),
+        decimal,
+        thousands: thousands.filter(|sign| *sign != decimal),
+        decimals: [chance.below(5), chance.of(&[0, 0, 0, 1, 3])],
+        head: [&preamble[..with_preamble], &[names], &[units][..with_units]].concat(),
+        others,
+        is_trailing: chance.below(2) == 0,
+    }
 }
 
-fn curves() -> impl Strategy<Value = Readings> {
-    let steps = prop::collection::vec((1_u64..2_000_000, 1_u64..20_000), 5..12);
-    (0_u64..1_000_000, 5_000_u64..400_000, steps).prop_map(|(n, a, steps)| {
-        let mut readings = vec![(n, a)];
-        for (more_n, more_a) in steps {
-            let (n, a) = readings[readings.len() - 1];
-            readings.push((n + more_n, a + more_a));
-        }
-        readings
-    })
-}
-
-fn damages() -> impl Strategy<Value = Damage> {
-    let place = || any::<prop::sample::Index>();
-    prop_oneof![
-        3 => Just(Damage::None),
-        1 => place().prop_map(Damage::Cut),
-        1 => place().prop_map(Damage::LineLost),
-        1 => place().prop_map(Damage::LineTwice),
-        1 => place().prop_map(Damage::CellLost),
-        1 => (place(), prop::sample::select(vec!['\t', ';', ',', '|', ' '])).prop_map(|(place, sign)| Damage::Separator(place, sign)),
-        1 => place().prop_map(Damage::Word),
-        1 => (place(), any::<u8>()).prop_map(|(place, byte)| Damage::Byte(place, byte)),
-    ]
+/// Cycles, and crack lengths in micrometres, of a curve that grows.
+fn readings(chance: &mut Chance) -> Vec<[u64; 2]> {
+    let mut at = [chance.below(1_000_000) as u64, 5_000 + chance.below(400_000) as u64];
+    let mut all = vec![at];
+    for _ in 0..5 + chance.below(7) {
+        at = [at[0] + 1 + chance.below(2_000_000) as u64, at[1] + 1 + chance.below(20_000) as u64];
+        all.push(at);
+    }
+    all
 }
 
 /// A whole number of `10^-decimals` in writing.
 fn number(value: u64, decimals: usize, decimal: char, thousands: Option<char>) -> String {
     let power = 10_u64.pow(decimals as u32);
     let digits = (value / power).to_string();
-    let grouped = match thousands {
-        None => digits,
-        Some(sign) => {
-            let place = |i: usize| (i > 0 && (digits.len() - i).is_multiple_of(3)).then_some(sign);
-            digits.chars().enumerate().flat_map(|(i, digit)| place(i).into_iter().chain([digit])).collect()
-        }
-    };
+    let sign = |i: usize| thousands.filter(|_| i > 0 && (digits.len() - i).is_multiple_of(3));
+    let grouped: String = digits.chars().enumerate().flat_map(|(i, digit)| sign(i).into_iter().chain([digit])).collect();
     if decimals == 0 { grouped } else { format!("{grouped}{decimal}{:0decimals$}", value % power) }
 }
 
 impl Writing {
-    /// Crack length in mm of a reading whose length is in units of 1/4 of a hundred micrometres: what the decimals can hold.
+    /// A length in micrometres, as a whole number of its last decimal.
     fn length(&self, a: u64) -> u64 {
-        // Lengths of 5 to 400 mm in micrometres, cut to the decimals.
-        let micrometres = a;
-        match self.decimals {
-            0..=3 => micrometres / 10_u64.pow(3 - self.decimals as u32),
-            more => micrometres * 10_u64.pow(more as u32 - 3) + 1,
+        match self.decimals[0] {
+            few @ 0..=3 => a / 10_u64.pow(3 - few as u32),
+            more => a * 10_u64.pow(more as u32 - 3) + 1,
         }
     }
 
-    fn cell(&self, text: String) -> String {
-        if text.contains(self.separator) { format!("\"{text}\"") } else { text }
+    fn line(&self, cells: &[impl AsRef<str>]) -> String {
+        let quoted = |cell: &str| if cell.contains(self.separator) { format!("\"{cell}\"") } else { cell.to_owned() };
+        let cells: Vec<String> = cells.iter().map(|cell| quoted(cell.as_ref())).collect();
+        cells.join(&self.separator.to_string()) + &if self.is_trailing { self.separator.to_string() } else { String::new() }
     }
 
-    /// The lines of the file and the number of those above the readings.
-    fn lines(&self, readings: &Readings) -> (Vec<String>, usize) {
-        let join = |cells: Vec<String>| {
-            let line = cells.into_iter().map(|cell| self.cell(cell)).collect::<Vec<_>>().join(&self.separator.to_string());
-            if self.trailing { format!("{line}{}", self.separator) } else { line }
-        };
-        let words = |cells: &[&str]| cells.iter().map(|cell| (*cell).to_owned()).collect::<Vec<String>>();
-        let mut lines = Vec::new();
-        if self.preamble {
-            lines.extend(["Crack growth test".to_owned(), format!("Specimen{}CT 12", self.separator)]);
-        }
-        let others = [["Remark", "Time (s)"], ["", "s"]];
-        let mut head = words(&HEADERS[self.header]);
-        head.extend(others[0][..self.others].iter().map(|word| (*word).to_owned()));
-        lines.push(join(head));
-        if self.units_row {
-            let mut units = words(&["-", "mm"]);
-            units.extend(others[1][..self.others].iter().map(|word| (*word).to_owned()));
-            lines.push(join(units));
-        }
-        let above = lines.len();
-        for (n, a) in readings {
-            let cycles = number(n * 10_u64.pow(self.cycle_decimals as u32), self.cycle_decimals, self.decimal, self.thousands);
-            let length = number(self.length(*a), self.decimals, self.decimal, None);
-            let others = ["read".to_owned(), number(*n, 3, self.decimal, None)];
-            lines.push(join([cycles, length].into_iter().chain(others[..self.others].iter().cloned()).collect()));
-        }
-        (lines, above)
+    fn reading(&self, [n, a]: [u64; 2]) -> String {
+        let cycles = number(n * 10_u64.pow(self.decimals[1] as u32), self.decimals[1], self.decimal, self.thousands);
+        let length = number(self.length(a), self.decimals[0], self.decimal, None);
+        let others = ["read".to_owned(), number(n, 3, self.decimal, None)];
+        self.line(&[&[cycles, length][..], &others[..self.others]].concat())
     }
 
     /// Cycles and length (m) of a reading as a reader has to find them.
-    fn truth(&self, (n, a): (u64, u64)) -> (f64, f64) {
-        (n as f64, self.length(a) as f64 / 10_f64.powi(self.decimals as i32) * MM)
+    fn truth(&self, [n, a]: [u64; 2]) -> [f64; 2] {
+        [n as f64, self.length(a) as f64 / 10_f64.powi(self.decimals[0] as i32) * MM]
     }
 }
 
-/// Damages the lines; gives the file and the readings that may be other than they were.
-fn damaged(writing: &Writing, readings: &Readings, damage: &Damage) -> (Vec<u8>, Vec<usize>) {
-    let (mut lines, above) = writing.lines(readings);
-    let mut hit: Vec<usize> = Vec::new();
-    let count = readings.len();
-    let text = |lines: &[String]| {
-        let mark = if writing.mark { "\u{feff}" } else { "" };
-        format!("{mark}{}{}", lines.join(writing.line_end), writing.line_end).into_bytes()
+/// What happened to a file on its way.
+#[derive(PartialEq)]
+enum Damage {
+    None,
+    /// A row is lost, stands twice or is another text.
+    Row,
+    /// One reading may be another.
+    Cell,
+    /// The last one may have lost digits.
+    End,
+}
+
+/// The file as it arrives.
+fn sent(chance: &mut Chance, writing: &Writing, readings: &[[u64; 2]]) -> (Vec<u8>, Damage) {
+    let mut lines: Vec<String> = readings.iter().map(|reading| writing.reading(*reading)).collect();
+    let at = chance.below(lines.len());
+    let (what, sign) = (chance.below(10), chance.of(&['\t', ';', ',', '|', ' ']).to_string());
+    match what {
+        0 => drop(lines.remove(at)),
+        1 => lines.insert(at, lines[at].clone()),
+        2 => lines[at] = "out of paper".to_owned(),
+        3 => lines[at] = lines[at].split_once(writing.separator).map_or_else(String::new, |(_, rest)| rest.to_owned()),
+        4 => lines[at] = lines[at].replacen(writing.separator, &sign, 1),
+        5 => {
+            let mut bytes = lines[at].clone().into_bytes();
+            let byte = chance.below(bytes.len());
+            bytes[byte] = chance.below(256) as u8;
+            lines[at] = String::from_utf8_lossy(&bytes).into_owned();
+        }
+        _ => {}
+    }
+    let (end, mark) = (chance.of(&["\n", "\r\n", "\r"]), chance.of(&["", "\u{feff}"]));
+    let head: Vec<String> = writing.head.iter().map(|cells| writing.line(cells)).collect();
+    let mut bytes = format!("{mark}{}{end}", [head, lines].concat().join(end)).into_bytes();
+    if what == 6 {
+        bytes.truncate(chance.below(bytes.len()));
+    }
+    let damage = match what {
+        0..=2 => Damage::Row,
+        3..=5 => Damage::Cell,
+        6 => Damage::End,
+        _ => Damage::None,
     };
-    match damage {
-        Damage::None => {}
-        Damage::Cut(place) => {
-            let mut bytes = text(&lines);
-            bytes.truncate(place.index(bytes.len()));
-            // The reading that was cut through may have lost digits, and then nobody can tell.
-            return (bytes, (0..count).collect::<Vec<_>>());
-        }
-        Damage::LineLost(place) => drop(lines.remove(above + place.index(count))),
-        Damage::LineTwice(place) => {
-            let line = above + place.index(count);
-            lines.insert(line, lines[line].clone());
-        }
-        Damage::CellLost(place) => {
-            let line = above + place.index(count);
-            hit.push(line - above);
-            lines[line] = lines[line].split_once(writing.separator).map_or_else(String::new, |(_, rest)| rest.to_owned());
-        }
-        Damage::Separator(place, sign) => {
-            let line = above + place.index(count);
-            hit.push(line - above);
-            lines[line] = lines[line].replacen(writing.separator, &sign.to_string(), 1);
-        }
-        Damage::Word(place) => lines[above + place.index(count)] = "out of paper".to_owned(),
-        Damage::Byte(place, byte) => {
-            let line = above + place.index(count);
-            hit.push(line - above);
-            let mut bytes = lines[line].clone().into_bytes();
-            let at = place.index(bytes.len());
-            bytes[at] = *byte;
-            lines[line] = String::from_utf8_lossy(&bytes).into_owned();
-        }
-    }
-    (text(&lines), hit)
+    (bytes, damage)
 }
 
-fn check(writing: &Writing, readings: &Readings, damage: &Damage) -> Result<bool, TestCaseError> {
-    let (bytes, hit) = damaged(writing, readings, damage);
+/// A reading is this one, or one whose cycles or length are a thousand times too large or small.
+fn is_reading(curve: &MeasuredCurve, i: usize, [n, a]: [f64; 2]) -> [bool; 2] {
+    let [cycles, length] = [curve.cycles[i], curve.crack_length[i]];
+    let [same_n, same_a] = [(cycles - n).abs() <= 1e-9 * n, (length / a - 1.0).abs() < 1e-9];
+    let thousand = |of: f64, by: f64| (of / by - 1e-3).abs() < 1e-9 || (of / by - 1e3).abs() < 1e-3;
+    [same_n && same_a, thousand(cycles, n) && same_a || thousand(length, a) && same_n]
+}
+
+/// One file; whether it was read.
+fn try_file(seed: u64) -> bool {
+    let mut chance = Chance::new(seed);
+    let (writing, readings) = (writing(&mut chance), readings(&mut chance));
+    let (bytes, damage) = sent(&mut chance, &writing, &readings);
     let shown = String::from_utf8_lossy(&bytes).into_owned();
-    let truths: Vec<(f64, f64)> = readings.iter().map(|reading| writing.truth(*reading)).collect();
-    match parse(&bytes, Path::new("chance.csv"), &Import::default()) {
+    let measured = match parse(&bytes, Path::new("chance.csv"), &Import::default()) {
         Err(error) => {
-            prop_assert_eq!(error.exit_code(), 2);
             let words = error.to_string();
-            prop_assert!(words.contains("chance.csv") && words.contains(": "), "{}", words);
+            assert!(error.exit_code() == 2 && words.contains("chance.csv") && words.contains(": "), "{words}");
             // A whole file is refused for what it leaves open alone, or for lengths that its few decimals make equal... never for its form.
             let is_open = words.contains("is ambiguous: ") || words.contains("not a crack length");
-            prop_assert!(is_open || !matches!(damage, Damage::None), "{}\n{}", words, shown);
-            Ok(false)
+            assert!(is_open || damage != Damage::None, "seed {seed}: {words}\n{shown}");
+            return false;
         }
-        Ok(measured) => {
-            let curve = &measured.curves[0];
-            let is = |i: usize, (n, a): (f64, f64)| {
-                (curve.cycles[i] - n).abs() <= 1e-9 * n && (curve.crack_length[i] / a - 1.0).abs() < 1e-9
-            };
-            let cut = matches!(damage, Damage::Cut(_));
-            for i in 0..curve.cycles.len() {
-                let known = truths.iter().any(|truth| is(i, *truth));
-                let may_differ = if cut { i + 1 == curve.cycles.len() } else { !hit.is_empty() };
-                // A damaged reading may be another number, but never one of another writing.
-                let thousand = |of: f64, by: f64| (of / by - 1e-3).abs() < 1e-9 || (of / by - 1e3).abs() < 1e-3;
-                let mistaken = truths.iter().any(|(n, a)| {
-                    (thousand(curve.cycles[i], *n) && (curve.crack_length[i] / a - 1.0).abs() < 1e-9)
-                        || (thousand(curve.crack_length[i], *a) && (curve.cycles[i] - n).abs() <= 1e-9 * n)
-                });
-                prop_assert!(
-                    known || (may_differ && !mistaken),
-                    "reading {}: {:?}\n{}",
-                    i,
-                    (curve.cycles[i], curve.crack_length[i]),
-                    shown
-                );
-            }
-            let wrong = (0..curve.cycles.len()).filter(|&i| !truths.iter().any(|truth| is(i, *truth))).count();
-            prop_assert!(wrong <= 1, "{} readings are wrong:\n{}", wrong, shown);
-            if matches!(damage, Damage::None) {
-                prop_assert_eq!(curve.cycles.len(), readings.len(), "{}", shown);
-            }
-            Ok(true)
-        }
+        Ok(measured) => measured,
+    };
+    let (curve, mut wrong) = (&measured.curves[0], 0);
+    let count = curve.cycles.len();
+    for i in 0..count {
+        let found: Vec<[bool; 2]> = readings.iter().map(|reading| is_reading(curve, i, writing.truth(*reading))).collect();
+        let may_differ = damage == Damage::Cell || damage == Damage::End && i + 1 == count;
+        // A damaged reading may be another number, but never one of another writing.
+        let is_known = found.iter().any(|is| is[0]);
+        let is_right = is_known || may_differ && !found.iter().any(|is| is[1]);
+        assert!(is_right, "seed {seed}, reading {i}: {} {}\n{shown}", curve.cycles[i], curve.crack_length[i]);
+        wrong += usize::from(!is_known);
     }
-}
-
-/// Number of files that were read.
-fn try_files(cases: u32) -> u32 {
-    let mut runner = TestRunner::new(Config { failure_persistence: None, ..Config::with_cases(cases) });
-    let read = std::cell::Cell::new(0);
-    let files = (writings(), curves(), damages());
-    runner
-        .run(&files, |(writing, readings, damage)| {
-            read.set(read.get() + u32::from(check(&writing, &readings, &damage)?));
-            Ok(())
-        })
-        .unwrap_or_else(|error| panic!("{error}"));
-    read.get()
+    assert!(wrong <= 1 && (damage != Damage::None || count == readings.len()), "seed {seed}: {wrong} of {count} wrong:\n{shown}");
+    true
 }
 
 #[test]
 fn some_files_by_chance_are_read_or_refused() {
-    let read = try_files(200);
+    let read = (0..200).filter(|&seed| try_file(seed)).count();
     assert!(read > 50, "only {read} of 200 files were read: too much is refused");
 }
 
 #[test]
 #[ignore = "long: 10 000 files by chance"]
 fn many_files_by_chance_are_read_or_refused() {
-    let read = try_files(10_000);
+    let read = (0..10_000).filter(|&seed| try_file(seed)).count();
     println!("{read} of 10 000 files were read, the others refused by name");
     assert!(read > 2500);
 }
 
-/// A million readings in less than two seconds, from bytes to checked readings.
 #[test]
 #[ignore = "long: measures time on an idle machine"]
 fn a_million_readings_are_read_in_two_seconds() {

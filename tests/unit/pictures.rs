@@ -7,6 +7,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use tempfile::tempdir;
 
+use crate::support::rows::assert_says;
 use crate::support::{made_up_case, made_up_run};
 use perilife_growth::case::Case;
 use perilife_growth::predict::StopReason;
@@ -201,18 +202,19 @@ fn everything_of_the_specimen_is_drawn() {
     assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n") && svg.contains("a &lt; b &amp; c"));
     // Three tips, one dot in the legend.
     assert_eq!(svg.matches(&format!(r#"r="3.6" fill="{CRACK}""#)).count(), case.specimen.tips.len() + 1);
-    for words in [
-        "100 mm",
-        "200 mm",
-        "thickness 2 mm",
-        "stress 7 to 70 MPa, R = 0.1",
-        "fixed x, y",
-        "diameter 10 mm",
-        "slot with tip 2",
-        "tips 0 and 1: 11.18 mm",
-    ] {
-        assert!(svg.contains(words), "{words}");
-    }
+    assert_says(
+        &svg,
+        &[
+            "100 mm",
+            "200 mm",
+            "thickness 2 mm",
+            "stress 7 to 70 MPa, R = 0.1",
+            "fixed x, y",
+            "diameter 10 mm",
+            "slot with tip 2",
+            "tips 0 and 1: 11.18 mm",
+        ],
+    );
     assert!(!svg.contains("NaN"));
 }
 
@@ -268,11 +270,10 @@ fn the_way_of_a_tip_is_marked_by_shares_of_the_life() {
     // No larger than the crack at its end asks for, so that there is one picture.
     plate.outline_mm = vec![[-50.0, -30.0], [10.0, -30.0], [10.0, 30.0], [-50.0, 30.0]];
     let svg = plate_svg(&plate, &tables, SIZE);
-    for words in
-        ["25 %", "50 %", "75 %", "90 %", "stress 5 to 50 MPa, R = 0.1 &lt;&amp;&gt;", "cycles: 0", " mm</text>", "aria-label"]
-    {
-        assert!(svg.contains(words), "{words}");
-    }
+    assert_says(
+        &svg,
+        &["25 %", "50 %", "75 %", "90 %", "stress 5 to 50 MPa, R = 0.1 &lt;&amp;&gt;", "cycles: 0", " mm</text>", "aria-label"],
+    );
     assert!(!svg.contains("NaN") && svg.matches("R = 0.1").count() == 2, "the load stands there once, and in the sentence");
     // Four marks, then the tip; growth is even over the cycles.
     let rings: Vec<f64> = numbers_of(&svg, "fill=\"white\" stroke=\"#12171d\"", "stroke-width");

@@ -1,53 +1,22 @@
 //! Tables of da/dN over ΔK in every dress: read to the last digit, or refused by name.
 
 use std::path::Path;
+use std::sync::LazyLock;
 
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_measured::rates::read;
 use perilife_measured::{RangeKind, RateFileKeys, RateTable};
 
-/// Names of ΔK and da/dN with MPa√m and mm/cycle in a unit of theirs. Inch 25.4 mm, ksi 6.894757293168 MPa, kgf 9.80665 N.
-const DELTA_K: [(&str, f64); 12] = [
-    ("delta_k_mpa_sqrt_m", 1.0),
-    ("ΔK (MPa√m)", 1.0),
-    ("Delta K [MPa m^0.5]", 1.0),
-    ("dK, MPa*sqrt(m)", 1.0),
-    ("DELTA K (MPA SQRT(M))", 1.0),
-    ("∆K / MPa m^1/2", 1.0),
-    ("Stress intensity range (MPa√m)", 1.0),
-    ("Delta K (ksi√in)", 1.098_843_453_6),
-    ("dK (ksi sqrt(in))", 1.098_843_453_6),
-    ("ΔK [N/mm^1.5]", 0.031_622_776_601_7),
-    ("Delta K (N/mm^(3/2))", 0.031_622_776_601_7),
-    ("ΔK (kgf/mm^1.5)", 0.310_113_502_2),
-];
-const RATE: [(&str, f64); 9] = [
-    ("da_dn_mm_per_cycle", 1.0),
-    ("da/dN (mm/cycle)", 1.0),
-    ("DA/DN [mm/Cycle]", 1.0),
-    ("Crack growth rate (mm/cycle)", 1.0),
-    ("da/dN (m/cycle)", 1e3),
-    ("da/dN [m/cyc]", 1e3),
-    ("da/dN (in/cycle)", 25.4),
-    ("dadN (inch/cycle)", 25.4),
-    ("da/dN (µm/cycle)", 1e-3),
-];
+use crate::support::noise::Chance;
+use crate::support::rows::{assert_refusal, rows};
 
-/// Whole numbers that look random and are the same on every machine (Park and Miller 1988, Commun. ACM 31:1192).
-struct Chance(u64);
-
-impl Chance {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 = self.0 * 48_271 % 2_147_483_647;
-        (self.0 as usize / 7) % bound
-    }
-}
+/// Names of ΔK and of da/dN, each with MPa√m or mm/cycle in a unit of theirs.
+static NAMES: LazyLock<[Vec<(String, f64)>; 2]> = LazyLock::new(|| ["delta_k", "rate"].map(|of| rows("rate_tables", of)));
 
 /// Writes a table of rates by chance, reads it, and holds it against the truth; `true` where it was read.
 fn try_table(seed: u64) -> bool {
-    let mut chance = Chance(seed * 7919 + 1);
-    let ((k_name, k_unit), (rate_name, rate_unit)) = (DELTA_K[chance.below(DELTA_K.len())], RATE[chance.below(RATE.len())]);
-    let (mut k_name, mut rate_name) = (k_name.to_owned(), rate_name.to_owned());
+    let mut chance = Chance::new(seed);
+    let [(mut k_name, k_unit), (mut rate_name, rate_unit)] = NAMES.each_ref().map(|of| chance.of(of));
     let [log_k, log_rate] = [chance.below(6) == 0, chance.below(6) == 0];
     if log_k {
         k_name = format!("log10 {k_name}");
@@ -57,7 +26,7 @@ fn try_table(seed: u64) -> bool {
     }
     let is_comma = chance.below(3) == 0;
     let separators: &[&str] = if is_comma { &[";", "\t", "; "] } else { &[",", ";", "\t", ", ", "|"] };
-    let separator = separators[chance.below(separators.len())];
+    let separator = chance.of(separators);
     // A name with the separator in it stands in quotes, which begin where the cell does.
     let separator = if k_name.contains(',') { separator.trim_end_matches(' ') } else { separator };
     let quoted = |name: &str| {
@@ -94,7 +63,7 @@ fn try_table(seed: u64) -> bool {
         names.swap(0, 1);
     }
     if says_ratio {
-        names.push(["stress_ratio", "R", "R ratio"][chance.below(3)].to_owned());
+        names.push(chance.of(&["stress_ratio", "R", "R ratio"]).to_owned());
     }
     let rows: Vec<String> = truth.iter().enumerate().map(row).collect();
     let text = format!("{}\n{}\n", names.join(separator), rows.join("\n"));
@@ -140,8 +109,7 @@ fn table(text: &str, keys: &RateFileKeys) -> perilife_base::error::Result<RateTa
 fn what_a_table_of_rates_does_not_say_is_asked_for() {
     let plain = RateFileKeys::default();
     let with = |text: &str, keys: &RateFileKeys, words: &str| {
-        let error = table(text, keys).unwrap_err().to_string();
-        assert!(error.contains(words), "{words} in {error}");
+        assert_refusal(table(text, keys), &[words]);
     };
     with("dK,da/dN (mm/cycle),R\n6,1e-5,0.1\n", &plain, "has no unit");
     with("dK (Pa),da/dN (mm/cycle),R\n6,1e-5,0.1\n", &plain, "has an unknown unit");
@@ -186,10 +154,11 @@ fn ends_of_k_ratios_side_by_side_and_unmeasured_rates() {
         let row = table(text, &keys).unwrap().rows.remove(0);
         assert!((row.ratio - ratio).abs() < 1e-9 && (row.delta_k / MPA_SQRT_M - delta_k).abs() < 1e-9, "{row:?}");
     }
-    let wrong = table("ΔK (MPa√m),Kmax (MPa√m),R,da/dN (mm/cycle)\n7,10,0.1,1e-5\n", &plain).unwrap_err().to_string();
-    assert!(wrong.contains("gives a stress ratio of 0.300; the row has 0.1"), "{wrong}");
-    let lacks = table("Kmax (MPa√m),da/dN (mm/cycle)\n10,1e-5\n", &plain).unwrap_err().to_string();
-    assert!(lacks.contains("has no columns"), "{lacks}");
+    assert_refusal(
+        table("ΔK (MPa√m),Kmax (MPa√m),R,da/dN (mm/cycle)\n7,10,0.1,1e-5\n", &plain),
+        &["gives a stress ratio of 0.300; the row has 0.1"],
+    );
+    assert_refusal(table("Kmax (MPa√m),da/dN (mm/cycle)\n10,1e-5\n", &plain), &["has no columns"]);
     for (text, first, said) in [
         ("da/dN (mm/cycle),R=0.1,R=0.5\n1e-6,5,4\n1e-5,9,\n", [0.1, 5.0], true),
         ("da/dN (mm/cycle),ΔK at R 0.1 (MPa√m)\n1e-6,5\n1e-5,9\n", [0.1, 5.0], false),
@@ -214,6 +183,5 @@ fn ends_of_k_ratios_side_by_side_and_unmeasured_rates() {
         let found = table(&text, &plain).unwrap();
         assert!(found.rows.len() == 1 && found.warnings[0].contains(&format!("= 3.25: {cell} (line 2)")), "{:?}", found.warnings);
     }
-    let wrong = table("ΔK (MPa√m),da/dN (mm/cycle),R\n3.25,slow,0.1\n5,1e-6,0.1\n", &plain).unwrap_err().to_string();
-    assert!(wrong.contains("is not a number"), "{wrong}");
+    assert_refusal(table("ΔK (MPa√m),da/dN (mm/cycle),R\n3.25,slow,0.1\n5,1e-6,0.1\n", &plain), &["is not a number"]);
 }

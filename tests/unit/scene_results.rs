@@ -9,7 +9,8 @@ use perilife_results::output::{OutputFolder, RunKind};
 use perilife_runner::{Task, of_scene};
 use perilife_scenes::outcome::HistoryRow;
 use perilife_scenes::{Scene, SceneEnd, run};
-use serde_json::Value;
+
+use crate::support::desk::json;
 
 const TEXT: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 20\nlength_mm = 20\nthickness_mm = 1\n[material]\nyoungs_modulus_gpa = 65\n\
     poisson_ratio = 0.2\ndensity_kg_m3 = 2235\n[model]\nspacing_mm = 2\n[loading]\nkind = \"velocity\"\nvelocity_mm_s = 1\nedges = [\"top\", \"bottom\"]\n\
@@ -42,7 +43,7 @@ fn histories_of_a_bad_end_are_kept() {
         assert!(error.to_string().contains(end.name()) && error.to_string().contains("so far are written"), "{error}");
         let history = fs::read_to_string(out.join("history.csv")).unwrap();
         assert_eq!(history.lines().count(), rows + 1, "the row without numbers is left out");
-        let result: Value = serde_json::from_str(&fs::read_to_string(out.join("result.json")).unwrap()).unwrap();
+        let result = json(out.join("result.json"));
         assert_eq!((&result["stop_reason"], &result["converged"]), (&end.name().into(), &false.into()));
         assert!(result["peak_load_n"].is_number());
         let files = fs::read_dir(out.join("paraview")).unwrap().count();

@@ -1,6 +1,5 @@
 //! Sweeps: designs, distributions, and laws that scatter.
 
-use std::fs;
 use std::path::Path;
 
 use perilife_base::input::{Document, Folder};
@@ -12,7 +11,8 @@ use perilife_calibration::sweep::{DrawnCase, Sweep};
 use perilife_growth::case::record::FittedRecord;
 use perilife_growth::case::{Case, fitted_record};
 use perilife_growth::predict::{Silent, predict};
-use tempfile::tempdir;
+
+use crate::support::desk::desk;
 
 #[test]
 fn every_stratum_is_met_once() {
@@ -104,9 +104,7 @@ const CASE: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlen
 
 /// Reads the sweep of this design of [`CASE`].
 fn sweep(design: &str) -> perilife_base::error::Result<Sweep> {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("panel.toml"), CASE).unwrap();
-    fs::write(dir.path().join("sweep.toml"), format!("case = \"panel.toml\"\n{design}")).unwrap();
+    let dir = desk(&[("panel.toml", &CASE), ("sweep.toml", &format!("case = \"panel.toml\"\n{design}"))]);
     Sweep::with_overrides(Document::read(&dir.path().join("sweep.toml"), &[])?, &[], 1000)
 }
 
@@ -157,7 +155,6 @@ fn the_shipped_sweep_is_right() {
     assert_eq!(sweep.cases().unwrap().len(), 200);
 }
 
-/// The record that is shipped.
 fn record() -> FittedRecord {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration/al2024-t3");
     fitted_record("fitted.toml", &Folder::from(folder.as_path())).unwrap()

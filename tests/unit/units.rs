@@ -13,6 +13,8 @@ use perilife_results::format::of_result;
 use serde_json::json;
 use toml::Value;
 
+use crate::support::rows::{assert_refusal, rows};
+
 /// Pound of force and inch by their definitions (NIST SP 811, appendix B.8); all others follow.
 const LBF: f64 = 4.448_221_615_260_5;
 const KSI: f64 = LBF * 1e3 / (25.4 * 25.4);
@@ -121,8 +123,10 @@ fn lists_tables_and_overrides_have_us_keys_too() {
 fn what_is_wrong_is_said_in_the_words_of_the_file() {
     let [_, us] = pairs().swap_remove(0);
     let set = ["specimen.width_in=5", "specimen.width_mm=120"].map(str::to_owned);
-    let error = Document::parse(&us, "panel", Folder::none(), &set).unwrap_err().to_string();
-    assert!(error.contains("specimen.width_mm=120") && error.contains("conflicts with specimen.width_in"), "{error}");
+    assert_refusal(
+        Document::parse(&us, "panel", Folder::none(), &set),
+        &["specimen.width_mm=120", "conflicts with specimen.width_in"],
+    );
     let cases: [(&str, &str, &[&str]); 7] = [
         ("width_in = 6", "width_in = 6\nwidth_mm = 152.4", &["specimen.width_in = 6", "specimen.width_mm", "conflicts with"]),
         ("width_in = 6", "width_in = -6", &["specimen.width_in = -6", "must be above zero", "inch"]),
@@ -143,37 +147,9 @@ fn what_is_wrong_is_said_in_the_words_of_the_file() {
 
 #[test]
 fn quantities_in_words_change_and_nothing_else() {
-    // By 25.4, 6.894757, 1.098843 and 4.448222.
-    let told = [
-        ("life measured 253726, fitted 253539 cycles (-0.07 %)", "life measured 253726, fitted 253539 cycles (-0.07 %)"),
-        ("Crack length   10.0 → 101.6 mm (tip 1 governs)", "Crack length   0.3937 → 4.000 inch (tip 1 governs)"),
-        ("rate 2.2405e-4 mm/cycle ± 1.87 % at ΔK = 15.243 MPa√m", "rate 8.821e-6 in/cycle ± 1.87 % at ΔK = 13.872 ksi√in"),
-        ("calibrated ΔK  8.189 to 26.540 MPa√m", "calibrated ΔK  7.452 to 24.153 ksi√in"),
-        ("11.3 % of life below ΔK 8.19, the lowest fitted", "11.3 % of life below ΔK 7.453 ksi√in, the lowest fitted"),
-        ("plate, 300 × 100 × 2 mm, 1 crack", "plate, 11.81 × 3.937 × 0.07874 inch, 1 crack"),
-        (
-            "plate, 152.4 x 304.8 x 2.54 mm (width, length, thickness)",
-            "plate, 6.000 x 12.00 x 0.1000 inch (width, length, thickness)",
-        ),
-        (
-            "box (2.54, 0) to (-25.4, 5.08) mm; velocity (25400, free) mm/s",
-            "box (0.1000, 0) to (-1.000, 0.2000) inch; velocity (1000, free) in/s",
-        ),
-        ("at (12.7000, -25.4000) mm; near (25.4, 5.08 mm)", "at (0.5000, -1.000) inch; near (1.000, 0.2000 inch)"),
-        ("give a length between 0.001 and 254 mm", "give a length between 3.937e-5 and 10.00 inch"),
-        ("tips 1 and 5.08 mm of crack 2", "tips 1 and 0.2000 inch of crack 2"),
-        ("da/dN = 1.0000e-8 ΔK^3 (mm/cycle, MPa√m)", "da/dN = 5.2236e-10 ΔK^3 (in/cycle, ksi√in)"),
-        ("model.spacing_mm asks; 30000 points, N = 5 N", "model.spacing_mm asks; 30000 points, N = 1.124 lbf"),
-        ("Crack length a, mm", "Crack length a, inch"),
-        // Digits of the conversion are none of the quantity: 6 ksi, and a force of 0.8 kip.
-        ("stress 2.0684 to 41.3685 MPa", "stress 0.3000 to 6.000 ksi"),
-        ("force_max_kn = 3.55857729, 1.342 mm", "force_max_kn = 3.55857729, 0.05283 inch"),
-        ("force 3.5586 kN, crack 34.0868 mm", "force 0.8000 kip, crack 1.342 inch"),
-        ("E 73.1 GPa, 345 MPa, 4.448222 kN, 10 N/mm^1.5", "E 10.60 Msi, 50.04 ksi, 1.000 kip, 10 N/mm^1.5"),
-    ];
-    for (metric, us) in told {
-        assert_eq!(in_units(metric, System::Us), us);
-        assert_eq!(in_units(us, System::Us), us, "told twice");
+    for [metric, us] in rows::<Vec<[String; 2]>>("units", "quantities") {
+        assert_eq!(in_units(&metric, System::Us), us);
+        assert_eq!(in_units(&us, System::Us), us, "told twice");
     }
     assert_eq!(
         in_units("crack 0.39370 inch, 13.872 ksi√in, 12 in the plate", System::Si),
@@ -191,23 +167,14 @@ fn crack_lengths_have_the_digits_that_matter() {
 
 #[test]
 fn keys_in_words_are_those_of_the_units() {
-    let told = [
-        ("end the life there by stop.crack_length_mm: beyond it", "end the life there by stop.crack_length_in: beyond it"),
-        ("give fatigue.delta_k_threshold_mpa_sqrt_m.", "give fatigue.delta_k_threshold_ksi_sqrt_in."),
-        ("not above fatigue.initiation.limit_mpa = 137.9", "not above fatigue.initiation.limit_ksi = 20.00"),
-        ("loading.force_max_n=4448.222 and pins[0].pin_diameter_mm", "loading.force_max_lbf=1000 and pins[0].pin_diameter_in"),
-        ("model.spacing_mm = 2.54 mm", "model.spacing_in = 0.1000 inch"),
-        // What has no size here stays as it is.
-        ("paris_c_mm_per_cycle = 1e-8, outline_mm = [[0, 1]]", "paris_c_mm_per_cycle = 1e-8, outline_mm = [[0, 1]]"),
-        ("a_n and a_n.csv in out/case_mm", "a_n and a_n.csv in out/case_mm"),
-    ];
-    for (metric, us) in told {
-        assert_eq!(with_keys(metric, System::Us), us);
-        assert_eq!(with_keys(us, System::Us), us, "told twice");
+    let told: Vec<[String; 2]> = rows("units", "keys");
+    for [metric, us] in &told {
+        assert_eq!(with_keys(metric, System::Us), *us);
+        assert_eq!(with_keys(us, System::Us), *us, "told twice");
     }
-    let result = json!({ "checks": [{ "remedy": told[0].0 }] });
+    let result = json!({ "checks": [{ "remedy": told[0][0] }] });
     let us = of_result(&result, System::Us);
-    assert_eq!((&us["checks"][0]["remedy"], of_result(&us, System::Si)), (&json!(told[0].1), result));
+    assert_eq!((&us["checks"][0]["remedy"], of_result(&us, System::Si)), (&json!(told[0][1]), result));
 }
 
 #[test]

@@ -10,6 +10,8 @@ use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
 use perilife_plate::specimen::Point;
 use perilife_plate::specimen::handbook::delta_k;
 
+use crate::support::rows::rows;
+
 fn example(name: &str, set: &[&str]) -> (Case, Prediction) {
     let overrides: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
     let case = Case::from_file(&folder().join(format!("{name}.toml")), &overrides).unwrap();
@@ -22,40 +24,8 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data/cases")
 }
 
-/// Examples whose number is compared with a calculation by hand, and those that only have their own: quick ones, and those whose
-/// first steps or first cycles are tested with every check and whose lives by the long test.
+/// Examples whose number is compared with a calculation by hand; all others have their own.
 const BY_HAND: [&str; 4] = ["compact_tension", "double_edge", "single_edge", "virkler_panel"];
-const OWN: [(&str, f64, StopReason); 15] = [
-    // 25 938.8 of them until the corner crack is through.
-    ("corner_crack_at_hole", 91_816.9, StopReason::NetSectionYield),
-    // What is left beside hole and crack no longer bears the load a little before the tip enters the hole.
-    ("crack_beside_hole", 72_120.8, StopReason::NetSectionYield),
-    // Simpson's rule over Feddersen's K from 4 to 49.8 mm gives the same.
-    ("fleet_of_panels", 482_502.2, StopReason::CrackLengthReached),
-    // Both as of the same plates drawn as `plate`.
-    ("fuselage_panel", 37_861.3, StopReason::NetSectionYield),
-    ("lug", 72_955.5, StopReason::NetSectionYield),
-    // 1.4 % over that of virkler_panel, whose points are fine everywhere.
-    ("hand_calculation", 247_247.1, StopReason::CrackLengthReached),
-    ("plate_with_hole", 32_924.4, StopReason::NetSectionYield),
-    ("spectrum_panel", 1_509_352.6, StopReason::CrackLengthReached),
-    ("two_cracks_plate", 39_031.3, StopReason::NetSectionYield),
-    // A quadrature by the secant and the Green function of the strip; 304 994 without the residual stress.
-    ("welded_panel", 135_129.0, StopReason::Toughness),
-    // Through after 535 242.2 cycles, then into the hole.
-    ("corner_crack_to_next_hole", 1_412_104.0, StopReason::EnteredHole),
-    ("hole_under_flights", 1_659_780.1, StopReason::NetSectionYield),
-    ("bracket", 63_603.3, StopReason::Toughness),
-    ("compact_with_pins", 243_506.9, StopReason::CrackLengthReached),
-    // 120 324.9 cycles of phase I by the S-N law, the rest of growth.
-    ("stop_hole", 340_226.8, StopReason::NetSectionYield),
-];
-const OWN_LONG: [(&str, f64, StopReason); 4] = [
-    ("notched_plate", 49_982.7, StopReason::NetSectionYield),
-    ("slant_crack_nodes", 86_753.6, StopReason::Severed),
-    ("ti_slant_30", 17_122.7, StopReason::CrackLengthReached),
-    ("ti_slant_43", 23_001.9, StopReason::CrackLengthReached),
-];
 const SLANT: &str = "slant_crack_plate";
 
 #[test]
@@ -68,9 +38,9 @@ fn every_example_has_a_number() {
         .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
         .collect();
     files.sort();
-    let mut known: Vec<&str> =
-        BY_HAND.iter().copied().chain(OWN.iter().chain(&OWN_LONG).map(|own| own.0)).chain([SLANT]).collect();
-    known.sort_unstable();
+    let own = ["quick", "slow"].into_iter().flat_map(own).map(|(name, ..)| name);
+    let mut known: Vec<String> = BY_HAND.into_iter().chain([SLANT]).map(str::to_owned).chain(own).collect();
+    known.sort();
     assert_eq!(files, known);
 }
 
@@ -102,24 +72,28 @@ fn integral(case: &Case, from: f64, to: f64) -> f64 {
     integrate(|length| range(length).powf(-2.86), from, to, 1e-9).value
 }
 
-/// Lives of plates that no handbook knows: figures of this program (November 2026), and the golden life by hand.
-fn keep_their_lives(examples: &[(&str, f64, StopReason)]) {
-    for (name, life, stop) in examples {
-        let (_, run) = example(name, &[]);
-        assert_eq!(run.stop, *stop, "{name}");
+fn own(which: &str) -> Vec<(String, f64, String)> {
+    rows("examples", which)
+}
+
+/// Lives of plates that no handbook knows.
+fn keep_their_lives(which: &str) {
+    for (name, life, stop) in own(which) {
+        let (_, run) = example(&name, &[]);
+        assert_eq!(run.stop.name(), stop, "{name}");
         assert!((run.life_cycles() / life - 1.0).abs() < 0.01, "{name}: {} against {life}", run.life_cycles());
     }
 }
 
 #[test]
 fn the_other_examples_keep_their_lives() {
-    keep_their_lives(&OWN);
+    keep_their_lives("quick");
 }
 
 #[test]
 #[ignore = "long: half a minute; cargo test examples -- --ignored --nocapture"]
 fn slow_examples_keep_their_lives() {
-    keep_their_lives(&OWN_LONG);
+    keep_their_lives("slow");
 }
 
 /// Start of the slant cracks on nodes. K of a crack at β to the load in an infinite plate: `σ √(π a) (sin²β, sin β cos β)`; the

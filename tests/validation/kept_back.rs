@@ -12,8 +12,7 @@ use perilife_calibration::power_law::PowerLaw;
 use perilife_calibration::search::FittedCurve;
 use perilife_measured::{Import, MeasuredCurve, read};
 
-use super::fit_engine;
-use super::fit_virkler::delta_k;
+use super::virkler::{calibration, delta_k, engine_fit};
 use crate::support::median::pointwise_median;
 use crate::support::shared::shared;
 
@@ -114,10 +113,10 @@ fn hand_calculation_gives_the_mean_of_panels_kept_back() {
 fn panels_kept_back_live_as_the_others_say() {
     let Some(file) = shared("virkler/virkler.csv") else { return };
     let file = file.canonicalize().unwrap();
-    let calibration = fit_engine::calibration(&[format!("measured.files=[\"{}\"]", file.display())]);
+    let calibration = calibration(&[format!("measured.files=[\"{}\"]", file.display())]);
     let [even, odd] = halves(&calibration.curves, 1);
     let named = |curve: &MeasuredCurve, name: &str| MeasuredCurve { specimen: name.to_owned(), ..curve.clone() };
-    let Fit { specimens, .. } = fit_engine::fit_to(&calibration, &[named(&even, "even"), named(&odd, "odd")]);
+    let Fit { specimens, .. } = engine_fit(&calibration, &[named(&even, "even"), named(&odd, "odd")]);
     let comparisons: Vec<Comparison> = [(&specimens[0], &even, &odd), (&specimens[1], &odd, &even)]
         .into_iter()
         .map(|(fit, seen, kept_back)| {

@@ -82,7 +82,7 @@ fn a_record_keeps_the_lot_and_one_specimen_gives_the_assumed_band() {
     let lot = lot_of(&all);
     let life = *band(&with(&lot, panel())).2.reached.last().unwrap();
     let expected =
-        lot.forecast(&cells(9.0 * MM, 49.8 * MM, CELLS, &super::fit_virkler::delta_k).unwrap(), None, Lot::Same).unwrap().life();
+        lot.forecast(&cells(9.0 * MM, 49.8 * MM, CELLS, &super::virkler::delta_k).unwrap(), None, Lot::Same).unwrap().life();
     for (found, share) in life.into_iter().zip([0.05, 0.5, 0.95]) {
         assert!((found / expected.quantile(share) - 1.0).abs() < 0.003, "{life:?} {}", expected.quantile(share));
     }
@@ -137,7 +137,7 @@ fn white_noise_of_the_first_rows_does_not_widen_the_life() {
     let case = with(&lot, hand_case(PANEL, &["stop.crack_length_mm=49.8"]));
     let (run, _, band) = band(&case);
     let whole =
-        lot.forecast(&cells(9.0 * MM, 49.8 * MM, CELLS, &super::fit_virkler::delta_k).unwrap(), None, Lot::Same).unwrap().life();
+        lot.forecast(&cells(9.0 * MM, 49.8 * MM, CELLS, &super::virkler::delta_k).unwrap(), None, Lot::Same).unwrap().life();
     let [low, middle, high] = *band.reached.last().unwrap();
     assert!((middle / run.life_cycles() - 1.0).abs() < 1e-12);
     for (found, share) in [(low / middle, 0.05), (high / middle, 0.95)] {

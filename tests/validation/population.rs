@@ -15,7 +15,7 @@ use perilife_measured::{Import, MeasuredCurve, read};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
-use super::fit_virkler::delta_k;
+use super::virkler::delta_k;
 use crate::support::shared::shared;
 
 /// Starts of the lives that are judged, mm.
@@ -132,7 +132,6 @@ impl Score {
         self.inside / self.count
     }
 
-    /// Percent.
     fn percent(&self) -> f64 {
         100.0 * self.crps / self.count
     }

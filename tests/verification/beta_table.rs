@@ -9,6 +9,7 @@ use perilife_results::factors::{SIGN, beta_table, table};
 
 use crate::support::hand_cases::{ALL, PANEL, hand_case, try_hand_case_in};
 use crate::support::plates::try_case;
+use crate::support::rows::{assert_refusal, rows};
 
 /// Lengths from one to another, mm, in so many steps.
 fn lengths([from, to]: [f64; 2], steps: usize) -> Vec<f64> {
@@ -148,45 +149,15 @@ fn the_table_has_the_columns_of_the_contract() {
 /// Every table that is none, with what its message names.
 #[test]
 fn tables_that_are_none_are_refused_by_line_and_value() {
-    let bad = [
-        ("crack_length_mm,beta\n9,1\n8,1\n50,1.2\n", "beta.csv:3: crack_length_mm = 8: is not above the 9 mm of line 2"),
-        ("crack_length_mm,beta\n9,1\n9,1\n50,1.2\n", "beta.csv:3: crack_length_mm = 9: is not above"),
-        ("crack_length_mm,beta\n9,1\n", "one row"),
-        ("crack_length_mm,beta\n", "no rows"),
-        ("crack_length_mm,beta\n9,1\n20,0\n50,1.2\n", "beta.csv:3: beta = 0: is not a number above zero"),
-        ("crack_length_mm,beta\n9,1\n20,-1\n50,1.2\n", "beta.csv:3: beta = -1"),
-        ("crack_length_mm,beta\n9,1\n20,one\n50,1.2\n", "beta.csv:3: beta = one: is not a number"),
-        ("crack_length_mm,beta\n9,1\n20,1,3\n50,1.2\n", "beta.csv:3: 20,1,3: has 3 columns where the header has 2"),
-        ("a,b\n9,1\n20,1\n", "beta.csv:1: header = b: unknown column; begin with crack_length_mm,beta"),
-        ("9,1\n50,1.2\n", "beta.csv:1: 9: begins a table whose columns have no names; begin with crack_length_mm,beta"),
-        ("crack_length_in,beta\n0.3,1\n0.4,x\n", "beta.csv:3: beta = x: is not a number"),
-        ("crack_length_in,beta\n0,1\n0.4,1\n", "beta.csv:2: crack_length_in = 0: is not a number above zero"),
-        ("crack_length_mm;beta\n9;1;2\n50;1\n", "beta.csv:2: 9;1;2: has 3 columns where the header has 2"),
-        ("crack_length_mm,beta\n10,1\n50,1.2\n", "beta.csv:2: crack_length_mm = 10: is where the table begins"),
-        ("crack_length_mm,beta\n5,1\n8,1.2\n", "beta.csv:3: crack_length_mm = 8: is where the table ends"),
-        (
-            "crack_length_mm,beta\n5,1\n40,1.2\n",
-            "beta.csv:3: crack_length_mm = 40: is the end of the table; growth continues to 49.8 mm",
-        ),
-    ];
-    for (text, words) in bad {
+    for [text, words] in rows::<Vec<[String; 2]>>("beta_table", "no_tables") {
         let folder = Folder::at_hand([("beta.csv".to_owned(), text.as_bytes().to_vec())]);
         let set = ["stop.crack_length_mm=49.8"];
         let specimen = format!("{PANEL}beta_file = \"beta.csv\"\n");
         let run = try_hand_case_in(&specimen, &set, folder).and_then(|case| predict(&case, &Silent));
-        let message = run.unwrap_err().to_string();
-        assert!(message.contains(words), "{text}: {message}");
+        assert_refusal(run, &[&words]);
     }
-    // The same table in inches, with decimal commas and between tabs.
-    let same = [
-        "crack_length_mm,beta\n7.62,1\n25.4,1.1\n63.5,1.25\n",
-        "crack_length_in, beta\n0.3,1\n1,1.1\n2.5,1.25\n",
-        "crack_length_mm;beta\n7,62;1\n25,4;1,1\n63,5;1,25\n",
-        "a [mm],\u{3b2}\n7.62,1\n25.4,1.1\n63.5,1.25\n",
-        "a;beta\nmm;-\n7,62;1\n25,4;1,1\n63,5;1,25\n",
-        "# from a sheet\ncrack_length_in\tbeta\n0,3\t1\n1\t1,1\n2,5\t1,25\n",
-    ];
-    let lives = same.map(|text| life(PANEL, &["stop.crack_length_mm=49.8"], text));
+    let same: Vec<String> = rows("beta_table", "same");
+    let lives: Vec<f64> = same.iter().map(|text| life(PANEL, &["stop.crack_length_mm=49.8"], text)).collect();
     assert!(lives.iter().all(|life| (life / lives[0] - 1.0).abs() < 1e-9), "{lives:?}");
     // A way to K beside it, cracks of unlike length, slots and lengths that are not reached.
     let good = || Folder::at_hand([("beta.csv".to_owned(), b"crack_length_mm,beta\n1,1\n90,1.2\n".to_vec())]);
@@ -199,19 +170,22 @@ fn tables_that_are_none_are_refused_by_line_and_value() {
         (format!("{plate}{slot}"), "model.method=handbook", "requires cracks, not slots"),
     ];
     for (specimen, set, words) in refused {
-        let message = try_hand_case_in(&specimen, &[set], good()).unwrap_err().to_string();
-        assert!(message.contains("specimen.beta_file") && message.contains(words), "{message}");
+        assert_refusal(try_hand_case_in(&specimen, &[set], good()), &["specimen.beta_file", words]);
     }
     let slant = try_case(
         "kind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\ncracks = [{ from_mm = [-50, 0], to_mm = [-40, 0] }]\n",
         &[],
     );
-    let message = factor_sweep(&slant.unwrap(), &lengths([5.0, 20.0], 3), false, &Silent).unwrap_err().to_string();
-    assert!(message.contains("--sweep = 5") && message.contains("initial crack length 10 mm"), "{message}");
+    assert_refusal(
+        factor_sweep(&slant.unwrap(), &lengths([5.0, 20.0], 3), false, &Silent),
+        &["--sweep = 5", "initial crack length 10 mm"],
+    );
     let named = try_case(
         "kind = \"crack_at_hole\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\nhole_diameter_mm = 10\ncrack_length_mm = 8\n",
         &[],
     );
-    let message = factor_sweep(&named.unwrap(), &lengths([5.0, 20.0], 3), false, &Silent).unwrap_err().to_string();
-    assert!(message.contains("begin there, or give a smaller specimen.crack_length_mm"), "{message}");
+    assert_refusal(
+        factor_sweep(&named.unwrap(), &lengths([5.0, 20.0], 3), false, &Silent),
+        &["begin there, or give a smaller specimen.crack_length_mm"],
+    );
 }

@@ -1,6 +1,6 @@
 //! A run taken up from any of its checkpoints gives what the undisturbed run gives, bit for bit.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
 use perilife_base::error::Result;
@@ -9,6 +9,7 @@ use perilife_growth::predict::checkpoint::Checkpoint;
 use perilife_growth::predict::{Observer, Prediction, Progress, Silent, predict, resume};
 
 use crate::support::plates::{BOND_STRAIN, case};
+use crate::support::rows::rows;
 
 /// Keeps every checkpoint as the bytes of its file, and the blocks before it.
 #[derive(Default)]
@@ -77,69 +78,20 @@ fn read(bytes: &[u8]) -> Checkpoint {
     Checkpoint::from_bytes(bytes).unwrap()
 }
 
-const MIDDLE: &str = "kind=\"middle_tension\"\nwidth_mm=120\nlength_mm=120\nthickness_mm=2\ncrack_length_mm=10\n";
-const CLAMPED: &str =
-    "kind=\"single_edge_tension\"\nends=\"clamped\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\ncrack_length_mm=16\n";
-const SLANT: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\ncracks=[{from_mm=[-7,-5],to_mm=[7,5]}]\n";
-const TWO: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\n\
-                   cracks=[{from_mm=[-16,-3],to_mm=[-7,-3]},{from_mm=[6,3],to_mm=[17,3]}]\n";
-const HOLE: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\n\
-                    holes=[{x_mm=3,y_mm=6,diameter_mm=10}]\ncracks=[{from_mm=[-17,0],to_mm=[-9,0]}]\n";
-
 const FINE: &str = "model.spacing_mm=1";
-const BONDS: &str = BOND_STRAIN;
-/// Short steps, so that a crack across a small plate takes some hundred blocks: coarse points, a row of some hundredths of a second.
-const SHORTER: &str = "fatigue.step_error_percent=0.005";
 
-/// Name, `[specimen]`, settings; every one has a checkpoint at least.
-type Scene = (&'static str, &'static str, Vec<&'static str>);
-
-/// Two of every driver, as small as keeps a checkpoint.
-fn quick() -> Vec<Scene> {
-    vec![
-        ("window, bonds, slant", SLANT, vec![BONDS, "model.spacing_mm=2", "stop.crack_length_mm=40"]),
-        (
-            "multigrid, bonds, clamped",
-            CLAMPED,
-            vec![BONDS, "model.spacing_mm=1.25", "model.solver=multigrid", "stop.crack_length_mm=30"],
-        ),
-        ("tips, two cracks, state-based", TWO, vec![SHORTER, "model.spacing_mm=2", "model.bond_law=state_based"]),
-        ("tips, hole, window", HOLE, vec![SHORTER, "model.spacing_mm=2", "model.solver=window"]),
-        (
-            "nodes, slant",
-            SLANT,
-            vec!["model.method=element_free_galerkin", "model.spacing_mm=5", "stop.crack_length_mm=40", "output.paraview=true"],
-        ),
-    ]
+fn plate(name: &str) -> String {
+    rows::<BTreeMap<String, String>>("checkpoint", "plates").remove(name).unwrap()
 }
 
-fn all() -> Vec<Scene> {
-    vec![
-        ("window, quarter of a panel", MIDDLE, vec![BONDS, FINE]),
-        ("window, clamped", CLAMPED, vec![BONDS, FINE, "model.symmetry=off"]),
-        ("window, slant", SLANT, vec![BONDS, FINE, "stop.crack_length_mm=40"]),
-        ("window, state-based", SLANT, vec![BONDS, FINE, "model.bond_law=state_based", "stop.crack_length_mm=40"]),
-        ("multigrid, clamped", CLAMPED, vec![BONDS, FINE, "model.solver=multigrid", "stop.crack_length_mm=30"]),
-        (
-            "multigrid, ageing everywhere",
-            SLANT,
-            vec![BONDS, "model.solver=multigrid", "fatigue.ageing=everywhere", "stop.crack_length_mm=28"],
-        ),
-        ("multigrid, two cracks", TWO, vec![BONDS, "model.spacing_mm=2.5", "model.solver=multigrid", "stop.crack_length_mm=22"]),
-    ]
-}
-
-fn taken_up(scenes: Vec<Scene>) {
-    for (number, (name, specimen, set)) in scenes.into_iter().enumerate() {
-        let case = case(specimen, &[&["stop.cycles_max=1e12"], &set[..]].concat());
+/// Scenes of a table; every one has a checkpoint at least.
+fn taken_up(scenes: &str) {
+    for (number, (name, specimen, set)) in rows::<Vec<(String, String, Vec<String>)>>("checkpoint", scenes).iter().enumerate() {
+        let set: Vec<&str> = set.iter().map(String::as_str).chain(["stop.cycles_max=1e12"]).collect();
+        let case = case(&plate(specimen), &set);
         let keeping = Keeping::default();
         let whole = predict(&case, &keeping).unwrap();
         let kept = keeping.kept();
-        let sizes: Vec<usize> = kept.iter().map(|(bytes, _)| bytes.len() / 1000).collect();
-        println!(
-            "{name}: {} blocks, {} solves, {}, checkpoints of {sizes:?} kB",
-            whole.figures.blocks, whole.figures.solves, whole.stop
-        );
         assert!(!kept.is_empty(), "{name}: no checkpoint, so this scene tests nothing");
         // One that keeps nothing goes the same way.
         if number % 4 == 0 {
@@ -157,13 +109,13 @@ fn taken_up(scenes: Vec<Scene>) {
 
 #[test]
 fn a_run_taken_up_is_the_undisturbed_one() {
-    taken_up(quick());
+    taken_up("quick");
 }
 
 #[test]
 #[ignore = "long: three minutes"]
 fn a_run_taken_up_is_the_undisturbed_one_in_every_scene() {
-    taken_up(all());
+    taken_up("all");
 }
 
 /// From a slot: taken up before the crack is handed over from bonds to K, and after.
@@ -195,7 +147,7 @@ fn first(case: &Case) -> Vec<u8> {
 /// A service cancels a run and goes on later; what is kept can be older than where it was cancelled.
 #[test]
 fn a_cancelled_run_goes_on() {
-    let case = case(CLAMPED, &["fatigue.step_error_percent=0.01", "model.spacing_mm=2"]);
+    let case = case(&plate("clamped"), &["fatigue.step_error_percent=0.01", "model.spacing_mm=2"]);
     let whole = predict(&case, &Silent).unwrap();
     let mut checkpoint: Option<Vec<u8>> = None;
     let mut parts = 0;
@@ -227,7 +179,7 @@ fn refused(checkpoint: Result<Checkpoint>, words: &str) {
 
 #[test]
 fn damaged_and_foreign_checkpoints_are_refused() {
-    let case = |set: &[&str]| case(SLANT, &[&[BONDS, FINE, "stop.crack_length_mm=40"], set].concat());
+    let case = |set: &[&str]| case(&plate("slant"), &[&[BOND_STRAIN, FINE, "stop.crack_length_mm=40"], set].concat());
     let own = case(&[]);
     let bytes = first(&own);
     assert_eq!(read(&bytes).to_bytes(), bytes);

@@ -10,6 +10,8 @@ use perilife_growth::predict::tip_factors::{StressIntensityMethod, stress_intens
 use perilife_growth::stress_concentration::stressed;
 use perilife_plate::specimen::{Edge, Specimen};
 
+use crate::support::rows::{assert_says, rows};
+
 const REST: &str = "thickness_mm = 2.0\n[material]\nyoungs_modulus_gpa = 72\npoisson_ratio = 0.3\n[loading]\nstress_max_mpa = 70\n\
                     stress_ratio = 0.1\n[fatigue]\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3.0\n";
 
@@ -162,53 +164,12 @@ fn a_drawn_fillet_concentrates_stress_as_in_the_charts() {
     assert!((factor / chart - 1.0).abs() < 0.02, "{factor} for {chart}");
 }
 
-/// Every refusal with its layer and place.
 #[test]
 fn what_is_no_plate_is_refused_by_layer_and_place() {
-    let spline = "SPLINE outline 10 3 20 4";
-    let open = "LWPOLYLINE outline 70 0 10 -50 20 -100 10 50 20 -100 10 50 20 100 10 -50 20 100";
-    let bow = "LWPOLYLINE outline 70 1 10 -50 20 -100 10 50 20 100 10 50 20 -100 10 -50 20 100";
-    let of_dxf: [(u8, &[&str], &[&str]); 24] = [
-        (4, &[open, HOLE], &["layer outline", "open", "(-50", "(-50.0000, 100.0000) mm"]),
-        (4, &[bow], &["crosses or touches itself", "(-50.0000, -100.0000) mm"]),
-        (4, &[RECTANGLE, spline], &["layer outline", "SPLINE at (3, 4)", "not a circular arc"]),
-        (4, &[RECTANGLE, "ELLIPSE holes 10 3 20 4"], &["layer holes", "ELLIPSE at (3, 4)"]),
-        (4, &[RECTANGLE, "INSERT outline 10 3 20 4"], &["INSERT at (3, 4)", "explode"]),
-        (4, &[RECTANGLE, "TEXT outline 10 3 20 4"], &["TEXT at (3, 4)"]),
-        (4, &[RECTANGLE, "LINE frame 10 3 20 4 11 5 21 6"], &["layer \"frame\"", "LINE at (3, 4)", "outline, holes, cracks"]),
-        (
-            4,
-            &[RECTANGLE, "LWPOLYLINE holes 70 1 10 0 20 0 10 5 20 0 10 5 20 5"],
-            &["layer holes", "(0.0000, 0.0000) mm", "not a full circle"],
-        ),
-        (4, &[RECTANGLE, "ARC holes 10 0 20 0 40 10 50 0 51 90"], &["layer holes", "(10.0000, 0.0000)", "not a full circle"]),
-        (4, &[RECTANGLE, "CIRCLE cracks 10 0 20 0 40 10"], &["layer cracks", "closed"]),
-        (4, &[RECTANGLE, "LWPOLYLINE outline 70 1 10 0 20 0 10 5 20 0 10 5 20 5"], &["layer outline", "second closed line"]),
-        (4, &[RECTANGLE, "CIRCLE holes 10 45 20 0 40 10"], &["holes[0]", "past the outline"]),
-        (4, &[HOLE], &["nothing on the layer outline"]),
-        (4, &[RECTANGLE, "CIRCLE holes 10 x 20 0 40 10"], &["layer holes", "\"x\" is not a number"]),
-        (4, &[RECTANGLE, "CIRCLE holes 10 0 20 0"], &["layer holes", "has no group code 40"]),
-        (4, &[RECTANGLE, "CIRCLE holes 10 3 20 4 40 1 230 -1"], &["CIRCLE at (3, 4)", "extrusion -z"]),
-        (4, &["POLYLINE outline 70 5", "VERTEX outline 10 3 20 4", "SEQEND outline"], &["POLYLINE on line", "curve-fitted"]),
-        (4, &[RECTANGLE, "CIRCLE holes 10 3 20 4 40 1 210 0.6 230 0.8"], &["CIRCLE at (3, 4)", "tilted plane"]),
-        (4, &[RECTANGLE, "CIRCLE holes 10 3 20 4 30 2 40 1"], &["layer holes", "CIRCLE at (3, 4)", "z = 2", "z = 0"]),
-        (4, &[RECTANGLE, "LWPOLYLINE cracks 38 2 70 0 10 3 20 4 10 5 20 6"], &["layer cracks", "LWPOLYLINE at (3, 4)", "z = 2"]),
-        (
-            4,
-            &["POLYLINE outline 70 1", "VERTEX outline 10 3 20 4", "VERTEX outline 10 3 20 4 30 5", "SEQEND outline"],
-            &["layer outline", "POLYLINE on line", "z = 5"],
-        ),
-        (
-            4,
-            &[RECTANGLE, "CIRCLE holes 60 1 10 3 20 4 40 1"],
-            &["layer holes", "CIRCLE at (3, 4)", "is hidden", "show it if it is part of the plate"],
-        ),
-        (0, &[RECTANGLE], &["specimen.outline_unit", "is missing"]),
-        (3, &[RECTANGLE], &["unit 3"]),
-    ];
-    for (unit, entities, words) in of_dxf {
-        let text = dxf(unit, entities);
-        refused(DXF, ("part.dxf", text.as_str()), words);
+    for (unit, entities, words) in rows::<Vec<(u8, Vec<String>, Vec<String>)>>("drawings", "no_plate") {
+        let named = |entity: &String| if entity == "RECTANGLE" { RECTANGLE.to_owned() } else { entity.replace("HOLE", HOLE) };
+        let entities: Vec<String> = entities.iter().map(named).collect();
+        refused(DXF, ("part.dxf", &dxf(unit, &entities.iter().map(String::as_str).collect::<Vec<_>>())), &words);
     }
     let table = |name: &str, flags: u8, colour: i8| {
         let layers = format!("0\nLAYER\n2\noutline\n70\n0\n62\n7\n0\nLAYER\n2\n{name}\n70\n{flags}\n62\n{colour}\n");
@@ -223,28 +184,8 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
         assert_eq!(plate(DXF, &[("part.dxf", &table(name, flags, 7))]).holes.len(), 1);
     }
     let good = dxf(4, &[RECTANGLE, HOLE, CRACK]);
-    let of_keys: [(&str, &str, &str, &[&str]); 8] = [
-        (DXF, "part.dxf", "0\nSECTION\n", &["ends before its end mark"]),
-        (DXF, "part.dxf", "PK\u{3}\u{4}\nfoo\n", &["is not a DXF", "line 1"]),
-        ("outline_file = \"part.svg\"", "part.svg", "<svg><g>", &["is not a DXF drawing", "save it as DXF"]),
-        ("outline_file = \"part.step\"", "part.step", "x", &["is not a DXF drawing"]),
-        ("outline_file = \"part.dxf\"\nwidth_mm = 9", "part.dxf", &good, &["specimen.width_mm", "conflicts with outline_file"]),
-        (
-            "outline_file = \"part.dxf\"\noutline_unit = \"inch\"",
-            "part.dxf",
-            &good,
-            &["specimen.outline_unit", "conflicts with the unit of part.dxf"],
-        ),
-        ("outline_file = \"part.dxf\"\noutline_symmetry = \"x=0\"", "part.dxf", &good, &["is beyond x = 0"]),
-        (
-            "width_mm = 9\nlength_mm = 9\noutline_unit = \"mm\"",
-            "part.dxf",
-            &good,
-            &["specimen.outline_unit", "outline_file, which is missing"],
-        ),
-    ];
-    for (keys, name, text, words) in of_keys {
-        refused(keys, (name, text), words);
+    for (keys, name, text, words) in rows::<Vec<(String, String, String, Vec<String>)>>("drawings", "no_keys") {
+        refused(&keys, (&name, if text == "GOOD" { &good } else { &text }), &words);
     }
     refused(DXF, ("other.dxf", good.as_str()), &["part.dxf", "was not uploaded"]);
 }
@@ -345,8 +286,7 @@ fn what_a_drawing_hides_or_repeats_is_refused() {
     }
 }
 
-fn refused(keys: &str, file: (&str, &str), words: &[&str]) {
-    let Err(error) = try_case(keys, &[file]) else { panic!("{keys} {}: taken, not refused: {words:?}", file.1) };
-    let message = error.to_string();
-    assert!(words.iter().all(|word| message.contains(word)), "{words:?}: {message}");
+fn refused(keys: &str, file: (&str, &str), words: &[impl AsRef<str>]) {
+    let Err(error) = try_case(keys, &[file]) else { panic!("{keys} {}: taken, not refused", file.1) };
+    assert_says(&format!("{keys}: {error}"), words);
 }

@@ -24,7 +24,6 @@ const FLAWED: &str = "width_mm = 40\nlength_mm = 50\nholes = [{ x_mm = 8, y_mm =
 /// A plate with nothing but a small crack, as a plate has to have one, in a corner.
 const PLAIN: &str = "width_mm = 100\nlength_mm = 60\ncracks = [{ from_mm = [49.9, 29.9], to_mm = [49.99, 29.99] }]\n";
 
-/// A disorderly displacement.
 fn disorder(net: &Net) -> Vec<f64> {
     let mut noise = Noise::new(5);
     (0..net.len() * net.unknowns).map(|_| 1e-6 * noise.normal()).collect()

@@ -23,7 +23,6 @@ fn is_near(name: &str, found: [f64; 2], right: [f64; 2]) {
     assert!(off < 0.01 * right[0].hypot(right[1]), "{name}: {found:?}, {right:?}");
 }
 
-/// A line as two cracks that share an end, and as one path.
 #[test]
 fn cracks_that_share_an_end_are_one() {
     let Some(path) = shared("field/mechanics/kinked_start/kinked_45.toml") else { return };

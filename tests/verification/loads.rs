@@ -117,11 +117,6 @@ fn cycles_of_a_displacement() {
         a += step;
     }
     let force = kept.curve.last().unwrap().work / displacement;
-    println!(
-        "life {}, quadrature {cycles}; force at the end {force}, {}",
-        kept.life_cycles(),
-        displacement / compliance(squares)
-    );
     assert!((kept.life_cycles() / cycles - 1.0).abs() < 0.01);
     assert!((force * compliance(squares) / displacement - 1.0).abs() < 0.01);
     // Both begin with the same load.

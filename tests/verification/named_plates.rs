@@ -65,13 +65,6 @@ fn stopped_crack_starts_again() {
     let keys = "kind = \"stop_hole\"\nwidth_mm = 200\nlength_mm = 300\nthickness_mm = 2\nstopped_crack_length_mm = 20\nhole_diameter_mm = 8\nformed_length_mm = 0.5";
     let run = run(&case(keys, "stress_max_mpa = 50", "[fatigue.initiation]\nrange_mpa = 240\ncycles = 1e5\nslope = 5"));
     let phase = run.phase_one.unwrap();
-    println!(
-        "K_tg {:.3}, N_I {:.0} of {:.0}, {}",
-        phase.concentration.unwrap(),
-        phase.cycles.unwrap(),
-        run.life_cycles(),
-        run.stop
-    );
     assert!((phase.concentration.unwrap() / 6.424 - 1.0).abs() < 0.01, "{phase:?}");
     assert!(phase.at[0].abs() > 23.9e-3 && phase.at[1].abs() < 1e-3, "{phase:?}");
     assert!(phase.cycles.unwrap() < run.life_cycles());
@@ -108,12 +101,6 @@ fn a_crack_far_shorter_than_its_hole_leaves_it() {
         );
         let run = run(&case(&keys, "stress_max_mpa = 100", "[model]\nmethod = \"element_free_galerkin\""));
         let last = run.curve.last().unwrap().tips[0].position[0];
-        println!(
-            "{length} mm: {} after {:.0} cycles, {} rows, last at {last:.4} m",
-            run.stop,
-            run.life_cycles(),
-            run.curve.len()
-        );
         assert!(![StopReason::EnteredHole, StopReason::NothingAges].contains(&run.stop) && last > 0.02, "{length}: {}", run.stop);
     }
 }

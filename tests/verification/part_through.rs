@@ -227,7 +227,6 @@ fn fronts_end_as_they_should() {
     );
 }
 
-/// From break-through on the life is that of the same plate with a through crack from the start.
 #[test]
 fn a_through_crack_goes_on_as_that_of_a_plate() {
     let sizes = "width_mm = 40\nlength_mm = 80\nthickness_mm = 4\n";

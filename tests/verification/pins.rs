@@ -33,7 +33,6 @@ fn contact_carries_the_force_of_its_pin() {
     }
 }
 
-/// Points take the contact that nodes have found.
 #[test]
 fn points_take_the_contact_of_nodes() {
     let case = compact();

@@ -165,10 +165,6 @@ fn the_stiffness_is_positive_but_for_rigid_motion() {
         eigenvalues.sort_by(f64::total_cmp);
         let top = eigenvalues[eigenvalues.len() - 1];
         let modes = eigenvalues.iter().filter(|&&value| value < 1e-10 * top).count();
-        println!(
-            "{law:?}: smallest eigenvalues over the largest {:?}",
-            eigenvalues[..5].iter().map(|value| (value / top) as f32).collect::<Vec<_>>()
-        );
         assert!(eigenvalues[0] > -1e-12 * top, "{law:?}: {:e}", eigenvalues[0] / top);
         let resisted = law.kind.is_two_parameter() && law.rotation == Rotation::Resisted;
         assert_eq!(modes, if resisted { 2 } else { 3 }, "{law:?}");

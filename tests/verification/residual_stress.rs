@@ -12,6 +12,8 @@ use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
 use perilife_plate::specimen::green::centre_crack;
 use perilife_study::cases::by_name;
 
+use crate::support::desk::desk;
+
 const WELD: &str = "residual_stress = \"80 * (1 - (x/15)^2) * exp(-(x/15)^2 / 2)\"";
 const NODES: &str = "model.method=element_free_galerkin";
 const WALKER: &str = "growth_law = \"walker\"\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3\nwalker_gamma = 0.5";
@@ -271,9 +273,10 @@ fn what_does_not_know_residual_stress() {
     let edge = "kind = \"single_edge_tension\"\nends = \"uniform_stress\"\nwidth_mm = 100\nlength_mm = 300\ncrack_length_mm = 8";
     let steady = "paris_c_mm_per_cycle = 1e-8\nparis_m = 3";
     let pulled = "stress_max_mpa = 100\nstress_ratio = 0";
-    let dir = tempfile::tempdir().unwrap();
-    std::fs::write(dir.path().join("short.csv"), "x_mm,y_mm,stress_mpa\n-10,0,5\n10,0,5\n").unwrap();
-    std::fs::write(dir.path().join("broken.csv"), "x_mm,y_mm,stress_mpa\n-50,0,5\n50,0,many\n").unwrap();
+    let dir = desk(&[
+        ("short.csv", &"x_mm,y_mm,stress_mpa\n-10,0,5\n10,0,5\n"),
+        ("broken.csv", &"x_mm,y_mm,stress_mpa\n-50,0,5\n50,0,many\n"),
+    ]);
     let file = |name: &str| format!("residual_stress_file = \"{name}\"");
     let handbook: &[&str] = &["model.method=handbook"];
     let cases: &[(&str, String, &str, &[&str], &str)] = &[

@@ -1,5 +1,6 @@
 //! A scene taken up from any of its checkpoints gives what the undisturbed scene gives, bit for bit.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Mutex;
 
@@ -7,6 +8,8 @@ use perilife_growth::predict::Silent;
 use perilife_scenes::checkpoint::SceneCheckpoint;
 use perilife_scenes::outcome::SceneFigures;
 use perilife_scenes::{Fracture, Scene, SceneObserver, SceneProgress};
+
+use crate::support::rows::rows;
 
 /// Keeps every checkpoint as the bytes of its file.
 #[derive(Default)]
@@ -38,94 +41,17 @@ fn read(bytes: &[u8]) -> SceneCheckpoint {
     SceneCheckpoint::from_bytes(bytes).unwrap()
 }
 
-const CRACKED: &str = "kind=\"plate\"\nwidth_mm=20\nlength_mm=20\nthickness_mm=1\ncracks=[{from_mm=[-10,0.3],to_mm=[-1,0.3]}]\n";
-const NOTCHED: &str = "kind=\"plate\"\nwidth_mm=14\nlength_mm=16\nthickness_mm=4\n\
-                       notches=[{from_mm=[-7,0],to_mm=[-3,0],width_mm=2},{from_mm=[7,0],to_mm=[3,0],width_mm=2}]\n";
-const SLANT: &str = "kind=\"plate\"\nwidth_mm=14\nlength_mm=18\nthickness_mm=1\ncracks=[{from_mm=[-3,-3.2],to_mm=[3,3.2]}]\n";
-const DISC: &str = "kind=\"plate\"\ndiameter_mm=16\nthickness_mm=6\n";
-const GLASS: &str = "youngs_modulus_gpa=65\npoisson_ratio=0.2\ndensity_kg_m3=2235\nfracture_energy_j_m2=204\n";
-const STEEL: &str =
-    "youngs_modulus_gpa=203\npoisson_ratio=0.3\ndensity_kg_m3=7850\nyield_strength_mpa=345\ntensile_strength_mpa=572\n";
-const SOFT: &str = "youngs_modulus_gpa=1\npoisson_ratio=0.35\ndensity_kg_m3=1830\ntensile_strength_mpa=1.66\n";
-const TORN: &str = "kind=\"velocity\"\nvelocity_mm_s=5000\nedges=[\"top\",\"bottom\"]\ntransverse=\"held\"\nduration_s=3e-5\n";
-const PULLED: &str = "kind=\"displacement\"\nedges=[\"top\",\"bottom\"]\ntransverse=\"held\"\n";
-const PLATENS: &str = "kind=\"platens\"\nedges=[\"top\",\"bottom\"]\n";
-const SOFTENING: &str = "law=\"nonlinear_two_parameter\"\nfinal_ratio=3\n";
-const STRESS: &str = "law=\"principal_stress\"\nenters=\"influence\"\n";
-
 /// Name; `[specimen]`; `[material]`; `[model]`; `[loading]`; more of it; `[damage]`.
-type Setting = (&'static str, &'static str, &'static str, &'static str, &'static str, &'static str, &'static str);
+type Setting = [String; 7];
 
 /// One scene or more of every procedure, law and law of damage that remember different things. All of them break bonds.
-const SETTINGS: [Setting; 9] = [
-    ("motion, list of bonds", CRACKED, GLASS, "bond_law=\"two_parameter\"", TORN, "", "law=\"critical_energy\""),
-    (
-        "motion, lattice",
-        CRACKED,
-        GLASS,
-        "bond_law=\"one_bond_two_parameter\"\nrotation=\"resisted\"",
-        TORN,
-        "",
-        "law=\"critical_energy\"",
-    ),
-    ("motion, softening", NOTCHED, STEEL, "bond_law=\"two_parameter\"", TORN, "", SOFTENING),
-    (
-        "motion, platens",
-        DISC,
-        SOFT,
-        "bond_law=\"correspondence\"",
-        PLATENS,
-        "displacement_mm=0.3\nramp_s=1e-4\nduration_s=1e-4",
-        STRESS,
-    ),
-    (
-        "rest",
-        CRACKED,
-        GLASS,
-        "bond_law=\"two_parameter\"\nsolver=\"adaptive_dynamic_relaxation\"",
-        PULLED,
-        "displacement_mm=0.006\nsteps=20",
-        "law=\"critical_stretch\"",
-    ),
-    (
-        "rest, correspondence, platens",
-        DISC,
-        SOFT,
-        "bond_law=\"correspondence\"\nsolver=\"adaptive_dynamic_relaxation\"",
-        PLATENS,
-        "displacement_mm=0.15\nsteps=15",
-        STRESS,
-    ),
-    (
-        "march",
-        NOTCHED,
-        STEEL,
-        "bond_law=\"two_parameter\"\nsolver=\"adaptive_dynamic_relaxation\"",
-        PULLED,
-        "displacement_mm=0.06\nsteps=300\niterations_per_step=2",
-        SOFTENING,
-    ),
-    (
-        "path",
-        NOTCHED,
-        STEEL,
-        "bond_law=\"two_parameter\"\nsolver=\"secant\"",
-        PULLED,
-        "displacement_mm=0.03\nsteps=40",
-        SOFTENING,
-    ),
-    (
-        "path, flanks pressed",
-        SLANT,
-        GLASS,
-        "bond_law=\"two_parameter\"\nsolver=\"secant\"",
-        PULLED,
-        "displacement_mm=-0.04\nsteps=40",
-        "law=\"critical_energy\"",
-    ),
-];
+fn settings() -> Vec<Setting> {
+    rows("scene_checkpoint", "settings")
+}
 
-fn scene((name, specimen, material, model, loading, more, damage): Setting, set: &[&str]) -> Scene {
+fn scene(setting: &Setting, set: &[&str]) -> Scene {
+    let texts: BTreeMap<String, String> = rows("scene_checkpoint", "texts");
+    let [name, specimen, material, model, loading, more, damage] = setting.each_ref().map(|part| texts.get(part).unwrap_or(part));
     let text = format!(
         "[specimen]\n{specimen}[material]\n{material}[model]\n{model}\nspacing_mm=1\n[loading]\n{loading}{more}\n[damage]\n{damage}\n"
     );
@@ -135,20 +61,12 @@ fn scene((name, specimen, material, model, loading, more, damage): Setting, set:
 
 #[test]
 fn a_scene_taken_up_is_the_undisturbed_one() {
-    for (number, setting) in SETTINGS.into_iter().enumerate() {
-        let (name, scene) = (setting.0, scene(setting, &[]));
+    for (number, setting) in settings().iter().enumerate() {
+        let (name, scene) = (&setting[0], scene(setting, &[]));
         let keeping = Keeping::default();
         let whole = perilife_scenes::run(&scene, &keeping).unwrap();
         let kept = keeping.kept();
-        let (last, size) = (*whole.history.last().unwrap(), kept.last().map_or(0, Vec::len) / 1000);
-        println!(
-            "{name}: {}, {} rows, {} broken bonds, {} checkpoints of {size} kB, {:.2} s",
-            whole.end,
-            whole.history.len(),
-            last.broken_bonds,
-            kept.len(),
-            whole.figures.wall_s
-        );
+        let last = *whole.history.last().unwrap();
         assert!(kept.len() >= 3 && last.broken_bonds > 0, "{name}: nothing to take up, so this scene tests nothing");
         // One that keeps nothing goes the same way.
         if number % 3 == 0 {
@@ -177,7 +95,7 @@ fn a_scene_taken_up_is_the_undisturbed_one() {
 
 #[test]
 fn damaged_and_foreign_checkpoints_of_scenes_are_refused() {
-    let setting = SETTINGS[4];
+    let setting = &settings()[4];
     let own = scene(setting, &[]);
     let keeping = Keeping::default();
     perilife_scenes::run(&own, &keeping).unwrap();

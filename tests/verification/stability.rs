@@ -1,19 +1,4 @@
 //! Scenes at the rim of what a fatigue run can be asked: each ends in a right answer, or in a warning that says how wrong.
-//!
-//! | scene | test |
-//! |---|---|
-//! | ageing everywhere at low p, points detach | `ageing_everywhere_ends_though_points_detach`; loose points: `solvers::loose_pieces_...` |
-//! | crack reaches an edge | `a_tip_at_an_edge_ends_and_the_other_goes_on`; edge cracks: `fatigue::every_scene_ends_...` |
-//! | crack reaches a hole | `tips_end_in_holes` |
-//! | two cracks join | `collinear_cracks_join_as_mirror_twins`; offset ones: `fatigue::two_cracks_...`, `perilife verify paths` |
-//! | crack along and between lattice rows | `a_crack_along_a_row_grows_as_one_between_rows`, `a_crack_along_the_diagonal_grows_forward` |
-//! | severing | all runs to the end here; cut in two at the start: `interface::check` |
-//! | A so large that everything breaks in one block | `any_size_of_a_ends_well` |
-//! | A so small that nothing happens before `cycles_max` | `any_size_of_a_ends_well` |
-//! | R = 0, R negative | `compression_does_not_count` |
-//! | p = 1 and p = 12 | `low_and_high_exponents_follow_the_load` |
-//! | horizon ratio 1.5 and 2 | `horizon_ratios_agree_or_say_how_wrong_they_are` |
-//! | spacing that does not divide the width | `a_spacing_is_moved_to_one_that_fits` |
 
 use perilife_base::units::MM;
 use perilife_growth::predict::{Prediction, Silent, StopReason, predict};

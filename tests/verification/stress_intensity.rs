@@ -4,7 +4,6 @@ use perilife_growth::predict::tip_factors::{StressIntensityMethod, TipResult, st
 
 use crate::support::plates::{PANEL, case};
 
-/// Factors of the first tip of a case.
 fn first_tip(specimen: &str, set: &[String], methods: &[StressIntensityMethod]) -> TipResult {
     let all: Vec<&str> = set.iter().map(String::as_str).collect();
     stress_intensity(&case(specimen, &all), methods).unwrap().remove(0)

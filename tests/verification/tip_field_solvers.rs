@@ -103,7 +103,6 @@ fn one_life_and_one_path(is_chosen: impl Fn(usize, usize) -> bool) -> usize {
     runs
 }
 
-/// Every law on one plate or two, every solver by every law.
 #[test]
 fn every_solver_by_every_law_gives_one_life_and_one_path() {
     let runs = one_life_and_one_path(|plate, law| law % PLATES.len() == plate);

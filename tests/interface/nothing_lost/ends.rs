@@ -10,7 +10,8 @@ use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{assert_refused, perilife, texts};
 use crate::support::daily::{KINDS, PANEL, content, names, write_inputs};
-use crate::support::server::PATIENCE;
+use crate::support::desk::done;
+use crate::support::server::{PATIENCE, wait};
 
 /// A run of some seconds.
 const SLOW: [&str; 2] = ["predict", "slow.toml"];
@@ -152,11 +153,7 @@ fn a_signal_says_how_to_go_on() {
     let here = dir.path();
     let call = [&SLOW[..], &["--out", "out", "-q", "--checkpoint", "run.ckpt", "--checkpoint-every", "0"]].concat();
     let process = started(here, &call);
-    let begun = Instant::now();
-    while !here.join("run.ckpt").is_file() {
-        assert!(begun.elapsed() < PATIENCE, "no checkpoint");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait("no checkpoint", || here.join("run.ckpt").is_file());
     send(&process, "INT");
     let (code, stderr) = ended(process);
     assert_eq!(code, Some(130), "{stderr}");
@@ -227,8 +224,7 @@ fn mounted_and_full_places() {
     assert_refused(&refused, 2, &["--out = out", "is a mount point", "give a folder below it"]);
     assert!(begun.elapsed() < Duration::from_secs(2), "it is said before the run");
     for _ in 0..2 {
-        let output = perilife(here, &["predict", "panel.toml", "--out", "out/run", "-q"]);
-        assert!(output.status.success(), "{}", texts(&output).1);
+        done(here, &["predict", "panel.toml", "--out", "out/run", "-q"]);
     }
     assert_eq!(names(&mounted), ["run"]);
     assert!(mounted.join("run/a_n.csv").is_file());

@@ -8,6 +8,7 @@ use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{assert_refused, perilife, texts};
 use crate::support::daily::{content, names, write_inputs};
+use crate::support::desk::done;
 
 /// Every option that names one file: the call before it, a file that the call reads, and whether `-` is standard output there.
 const OUTPUTS: [(&[&str], &str, &str); 4] = [
@@ -89,8 +90,7 @@ fn a_checkpoint_is_nothing_that_is_read() {
             assert!(content(here) == before, "{command} --checkpoint {file}");
         }
         fs::remove_file(here.join("link")).unwrap();
-        let output = perilife(here, &[command, input, "--out", "out", "-q", "--checkpoint", "run.ckpt"]);
-        assert!(output.status.success() && !here.join("run.ckpt").exists(), "{}", texts(&output).1);
+        done(here, &[command, input, "--out", "out", "-q", "--checkpoint", "run.ckpt"]);
         fs::remove_dir_all(here.join("out")).unwrap();
     }
     assert!(names(here).iter().all(|name| !name.starts_with('.')), "{:?}", names(here));

@@ -6,18 +6,14 @@ use std::path::Path;
 
 use tempfile::{TempDir, tempdir};
 
-use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife};
 use crate::support::daily::{KINDS, content, names, write_inputs};
+use crate::support::desk::done;
 
 fn inputs() -> TempDir {
     let dir = tempdir().unwrap();
     write_inputs(dir.path());
     dir
-}
-
-fn done(folder: &Path, arguments: &[&str]) {
-    let output = perilife(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", texts(&output).1);
 }
 
 /// A file, a hidden one, a folder, one below a folder of the run, a link, a project: each is named, and stays with all else as it was.
@@ -33,7 +29,7 @@ fn what_a_user_laid_there_stays() {
             fs::write(out.join("mine/deep.txt"), "deep").unwrap();
         }),
         ("link", |out| symlink("../panel.toml", out.join("link")).unwrap()),
-        ("other", |out| done(out.parent().unwrap(), &["predict", "panel.toml", "--out", "out/other", "-q"])),
+        ("other", |out| drop(done(out.parent().unwrap(), &["predict", "panel.toml", "--out", "out/other", "-q"]))),
     ];
     let dir = inputs();
     let (here, out) = (dir.path(), dir.path().join("out"));

@@ -2,16 +2,12 @@
 
 use std::time::Instant;
 
-use tempfile::tempdir;
-
 use super::{QUICK, of};
-use crate::support::server::{Server, in_folder};
+use crate::support::server::Server;
 
 #[test]
 fn cases_that_are_too_large_are_refused_at_once() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let (_dir, service) = Server::alone(&["--jobs", "0"]);
     let plate = |specimen: &str, model: &str| {
         let [start, end] = [QUICK.find("[material]").unwrap(), QUICK.find("[model]").unwrap()];
         let loading = QUICK[start..end].replace("stress_range_mpa = 60", "stress_max_mpa = 60");
@@ -42,9 +38,7 @@ fn cases_that_are_too_large_are_refused_at_once() {
 /// A sweep is checked as one; it was taken for a case without sections.
 #[test]
 fn sweeps_are_checked_as_such() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let (_dir, service) = Server::alone(&["--jobs", "0"]);
     let grid = "case = \"base.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nfrom = 40\nto = 60\ncount = 5\n";
     let mut sweep = of("few", grid);
     sweep["files"] = serde_json::json!({ "base.toml": QUICK });

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 use std::sync::OnceLock;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use tempfile::tempdir;
 
@@ -12,7 +12,7 @@ use super::{QUICK, SLOW, of};
 use crate::interface::cli::perilife;
 use crate::support::noise::Noise;
 use crate::support::postgres::Postgres;
-use crate::support::server::{PATIENCE, Server};
+use crate::support::server::{Server, wait};
 
 /// The a-N curve of an undisturbed run by the command line.
 pub fn undisturbed(folder: &Path, text: &str) -> Vec<u8> {
@@ -25,15 +25,6 @@ pub fn undisturbed(folder: &Path, text: &str) -> Vec<u8> {
 fn undisturbed_slow() -> Vec<u8> {
     static CURVE: OnceLock<Vec<u8>> = OnceLock::new();
     CURVE.get_or_init(|| undisturbed(tempdir().unwrap().path(), SLOW)).clone()
-}
-
-/// Waits for something to become true.
-fn wait(what: &str, is_so: impl Fn() -> bool) {
-    let begun = Instant::now();
-    while !is_so() {
-        assert!(begun.elapsed() < PATIENCE, "{what}");
-        std::thread::sleep(Duration::from_millis(10));
-    }
 }
 
 const EAGER: [&str; 8] = ["--jobs", "2", "--checkpoint-every", "0", "--lease", "2", "--attempts", "100"];

@@ -17,7 +17,6 @@ fn with_tokens<const N: usize>(place: &[&str], more: &[&str], names: [(&str, &st
     (Server::start(place, &[&["--require-token"], more].concat()), tokens)
 }
 
-/// Bodies that trickle in keep nobody else waiting.
 #[test]
 fn slow_bodies_of_one_keep_nobody_waiting() {
     let dir = tempdir().unwrap();
@@ -171,9 +170,7 @@ fn a_look_ends_with_its_request() {
 /// With all connections taken, those who watch over the service are answered all the same.
 #[test]
 fn health_is_always_answered() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0", "--connections", "10"]);
+    let (_dir, service) = Server::alone(&["--jobs", "0", "--connections", "10"]);
     let address = service.url.trim_start_matches("http://").to_owned();
     let _idle: Vec<TcpStream> = (0..20)
         .map(|_| {

@@ -13,6 +13,7 @@ use tempfile::tempdir;
 
 use super::{QUICK, SLOW, of};
 use crate::interface::cli::{perilife, texts};
+use crate::support::desk::done;
 use crate::support::nginx::{DELIVERED, Nginx};
 use crate::support::server::{Server, in_folder};
 
@@ -49,9 +50,7 @@ fn options_are_known() {
 /// Where the programs have a limit of their own it is that of the service.
 #[test]
 fn limits_agree() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let (_dir, service) = Server::alone(&["--jobs", "0"]);
     let bytes = service.get("/v1/service").json()["limits"]["body_bytes"].as_u64().unwrap();
     assert!(DELIVERED.contains(&format!("client_max_body_size {}m;", bytes >> 20)));
     let kept = "User=perilife StateDirectoryMode=0700 NoNewPrivileges=yes ProtectSystem=strict PrivateTmp=yes Restart=on-failure";
@@ -102,9 +101,7 @@ fn units_are_accepted() {
 /// nginx accepts the configuration, and adds the TLS that it is there for.
 #[test]
 fn the_proxy_configuration_is_accepted() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let (_dir, service) = Server::alone(&["--jobs", "0"]);
     let Some(nginx) = Nginx::configured(&service.url) else { return };
     let checked = nginx.checked();
     assert!(checked.status.success(), "{}", texts(&checked).1);
@@ -126,9 +123,8 @@ fn the_proxy_configuration_is_accepted() {
 
 /// A token of a service in a folder.
 fn token(folder: &Path, data: &Path, role: &str) -> String {
-    let output = perilife(folder, &["token", "--data", data.to_str().unwrap(), "add", role, "--role", role]);
-    assert!(output.status.success(), "{}", texts(&output).1);
-    texts(&output).0.trim().to_owned()
+    let (stdout, _) = done(folder, &["token", "--data", data.to_str().unwrap(), "add", role, "--role", role]);
+    stdout.trim().to_owned()
 }
 
 /// A job with its events and files goes through the proxy for whoever has a token; a body of the largest size gets to the service.

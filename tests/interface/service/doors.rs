@@ -13,14 +13,13 @@ use tempfile::tempdir;
 use super::queue::token;
 use super::{FOR_PARAVIEW, QUICK, SLOW, of, tiny};
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::desk::done;
 use crate::support::server::{PATIENCE, Server, in_folder};
 
 /// The case of a media type does not count; another type is refused with those that are taken.
 #[test]
 fn a_body_is_taken_by_its_media_type() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let (_dir, service) = Server::alone(&["--jobs", "0"]);
     let json = of("case", QUICK).to_string();
     let cases: [(&str, &str, u16); 12] = [
         ("application/toml", QUICK, 200),
@@ -61,9 +60,7 @@ fn a_body_is_taken_by_its_media_type() {
 /// Drawings and tables of β come as other files of a case do.
 #[test]
 fn a_drawing_is_sent_along() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    let (_dir, service) = Server::alone(&["--jobs", "1"]);
     let [case, drawing] =
         ["bracket.toml", "bracket.dxf"].map(|name| std::fs::read_to_string(format!("data/cases/{name}")).unwrap());
     let sent = |files: serde_json::Value| service.post("/v1/check", &json!({ "input": case, "files": files }));
@@ -79,9 +76,7 @@ fn a_drawing_is_sent_along() {
 /// A download that broke off goes on where it was, of files of one part and of many.
 #[test]
 fn files_have_tags_and_ranges() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    let (_dir, service) = Server::alone(&["--jobs", "1"]);
     let job =
         service.submit("predictions", &of("large", &(QUICK.replace("spacing_mm = 1.5", "spacing_mm = 0.5") + FOR_PARAVIEW)));
     service.succeeded(&job);
@@ -114,9 +109,7 @@ fn files_have_tags_and_ranges() {
 /// Keys of a query that are not known are refused: a misspelt factor would give the interval of another.
 #[test]
 fn unknown_keys_of_a_query_are_refused() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    let (_dir, service) = Server::alone(&["--jobs", "1"]);
     let job = service.submit("predictions", &of("tiny", &tiny()));
     service.succeeded(&job);
     service.get(&format!("{job}/remaining?crack_length_mm=12&factor=5")).expect(200);
@@ -136,9 +129,7 @@ fn unknown_keys_of_a_query_are_refused() {
 /// Names that show nothing or something else, and those that addresses lose, are refused.
 #[test]
 fn names_show_what_they_are() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let (_dir, service) = Server::alone(&["--jobs", "0"]);
     for name in [" ", "\u{a0}", "\u{200b}", "a\u{202e}b", "a\u{2028}b", "\u{feff}a", "a\u{2066}b", ".", ".."] {
         service.post("/v1/predictions", &of(name, QUICK)).expect(422);
         service.post("/v1/predictions", &json!({ "input": QUICK, "files": { name: "7" } })).expect(422);
@@ -161,9 +152,7 @@ fn names_show_what_they_are() {
 /// A database that is removed under a running service is told of, and nothing is accepted that nobody would find again.
 #[test]
 fn a_database_that_was_removed_takes_no_jobs() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    let (dir, service) = Server::alone(&["--jobs", "1"]);
     service.succeeded(&service.submit("predictions", &of("tiny", &tiny())));
     for file in fs::read_dir(dir.path()).unwrap().flatten() {
         fs::remove_file(file.path()).unwrap();
@@ -308,8 +297,7 @@ fn a_database_is_named_and_not_made_by_a_slip() {
         }
         assert!(!here.join("typo").exists() && fs::read_dir(here.join("empty")).unwrap().count() == 0);
     }
-    let output = perilife(here, &["token", "--data", "right", "add", "ana", "--role", "read"]);
-    assert!(output.status.success() && texts(&output).1.contains("right/perilife.sqlite"), "{}", texts(&output).1);
+    done(here, &["token", "--data", "right", "add", "ana", "--role", "read"]);
 }
 
 /// Files of the store are nobody else's, in a folder that others may read as well.
@@ -323,8 +311,7 @@ fn nobody_else_reads_the_store() {
         fs::set_permissions(&data, fs::Permissions::from_mode(0o755)).unwrap();
         let place = in_folder(&data);
         if !call.is_empty() {
-            let output = perilife(dir.path(), &[&call[..1], &[&place[0], &place[1]], &call[1..]].concat());
-            assert!(output.status.success(), "{}", texts(&output).1);
+            done(dir.path(), &[&call[..1], &[&place[0], &place[1]], &call[1..]].concat());
         }
         let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
         service.submit("predictions", &of("case", QUICK));
@@ -340,9 +327,7 @@ fn nobody_else_reads_the_store() {
 /// A plate that takes long to build can be cancelled, and says what is being done.
 #[test]
 fn building_a_plate_is_watched() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1", "--points", "100000000"]);
+    let (_dir, service) = Server::alone(&["--jobs", "1", "--points", "100000000"]);
     let large = QUICK.replace("spacing_mm = 1.5", "spacing_mm = 0.05");
     let job = service.submit("predictions", &of("large", &large));
     let begun = Instant::now();

@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 use std::num::NonZeroU32;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use assert_cmd::cargo::cargo_bin;
 use axum::Router;
@@ -19,6 +19,7 @@ use tower::ServiceExt;
 
 use super::QUICK;
 use crate::support::noise::Noise;
+use crate::support::rows::rows;
 
 /// Memory that no flood of bodies may exceed, MB. A process of the tests has some 300 of its own.
 const MEMORY_MB: f64 = 1500.0;
@@ -35,44 +36,7 @@ const SCENE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 60\nlength_mm = 60
     [damage]\nlaw = \"critical_stretch\"\n";
 
 /// Pieces that inputs trip over.
-const TRAPS: [&str; 36] = [
-    "1e308",
-    "-1e308",
-    "1e-320",
-    "nan",
-    "inf",
-    "-0",
-    "0",
-    "99999999999999999999",
-    "-9223372036854775808",
-    "\"",
-    "'''",
-    "[[",
-    "]]",
-    "{",
-    "}",
-    "null",
-    "true",
-    "\u{0}",
-    "\u{feff}",
-    "\r",
-    "\t",
-    ";",
-    ",",
-    "=",
-    "..",
-    "../../etc/passwd",
-    "\u{1f4a5}",
-    "\\u0000",
-    "a.b.c = 1\n",
-    "[model]\n",
-    "holes = [{ x_mm = 0, y_mm = 0, diameter_mm = 1 }]\n",
-    "cracks = []\n",
-    "spacing_mm = 1e-9\n",
-    "outline_mm = [[0,0]]\n",
-    "\"files\":{}",
-    "--XX\r\n",
-];
+static TRAPS: LazyLock<Vec<String>> = LazyLock::new(|| rows("fuzzed", "traps"));
 
 /// Random changes of a text that keep most of it.
 struct Mutator(Noise);

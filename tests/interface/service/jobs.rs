@@ -224,9 +224,7 @@ const SCENE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 20\nlength_mm = 20
 /// Every kind of job runs, has the files of its command, and is refused with wrong options.
 #[test]
 fn every_kind_of_job_runs() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "2"]);
+    let (_dir, service) = Server::alone(&["--jobs", "2"]);
     let sweep =
         "case = \"case.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nvalues = [50, 60]\n";
     for (collection, body, files) in [

@@ -10,7 +10,8 @@ use super::crashes::SmallDisk;
 use super::jobs::{with_each_store, with_store};
 use super::queue::on_store;
 use super::{FOR_PARAVIEW, QUICK, SLOW, of, tiny};
-use crate::support::server::{PATIENCE, Server, in_folder};
+use crate::support::rows::assert_says;
+use crate::support::server::{PATIENCE, Server, in_folder, wait};
 
 /// The quick plate with points of another spacing.
 pub fn spaced(spacing_mm: f64) -> String {
@@ -49,11 +50,10 @@ fn a_job_ends_alone_at_its_limits() {
         let service = Server::start(place, &["--jobs", "1"]);
         service.succeeded(&service.submit("predictions", &of("counted", QUICK)));
         let counted = service.get("/metrics").text();
-        for line in
-            ["perilife_job_seconds_count", "perilife_queue_age_seconds 0", "perilife_disk_free_bytes{place=\"temporary\"}"]
-        {
-            assert!(counted.contains(line), "{line} in {counted}");
-        }
+        assert_says(
+            &counted,
+            &["perilife_job_seconds_count", "perilife_queue_age_seconds 0", "perilife_disk_free_bytes{place=\"temporary\"}"],
+        );
     });
 }
 
@@ -202,9 +202,5 @@ fn owners_have_so_much_space() {
     let full = size();
     service.send("DELETE", &job, &[], b"").expect(204);
     service.submit("predictions", &of("quick", QUICK));
-    let begun = Instant::now();
-    while size() > full / 2 {
-        assert!(begun.elapsed() < PATIENCE, "{full} bytes have become {}", size());
-        std::thread::sleep(Duration::from_millis(200));
-    }
+    wait("it stays large", || size() <= full / 2);
 }

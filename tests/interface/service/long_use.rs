@@ -184,7 +184,6 @@ fn two_thousand_jobs_over_dying_workers() {
     println!("{count} jobs over {kills} kills in {:.0} s", begun.elapsed().as_secs_f64());
 }
 
-/// Runs of a batch.
 const BATCH: usize = 12;
 
 /// Time of a batch of jobs by so many workers of one thread each, in processes of their own.
@@ -245,9 +244,7 @@ fn two_workers_are_faster_than_one() {
 #[test]
 #[ignore = "long: needs an idle machine; cargo test reads_go_on -- --ignored --nocapture"]
 fn reads_go_on_while_jobs_run() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "2"]);
+    let (_dir, service) = Server::alone(&["--jobs", "2"]);
     let jobs: Vec<String> = (0..20).map(|_| service.submit("predictions", &of("slow", SLOW))).collect();
     let stop = AtomicBool::new(false);
     let (begun, readers) = (Instant::now(), 4);

@@ -2,11 +2,10 @@
 //! brings, a preview of measured files with what is taken of them.
 
 use serde_json::{Value, json};
-use tempfile::tempdir;
 
 use super::jobs::with_each_store;
 use super::{QUICK, of, tiny};
-use crate::support::server::{Answer, Server, in_folder};
+use crate::support::server::{Answer, Server};
 
 const JSON: [(&str, &str); 1] = [("content-type", "application/json")];
 
@@ -73,9 +72,7 @@ fn a_run_is_renamed_noted_and_put_away() {
 /// The base case of a sweep and what that names come as files under their own names, whatever folders the input names.
 #[test]
 fn a_sweep_needs_no_folders() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    let (_dir, service) = Server::alone(&["--jobs", "1"]);
     let design = "case = \"../cases/panel.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nvalues = [50, 60]\n";
     let case = tiny();
     let body = json!({ "name": "two", "input": design, "files": { "panel.toml": case } });
@@ -89,9 +86,7 @@ fn a_sweep_needs_no_folders() {
 /// A table as a laboratory exports it: what one column is has to be said, all else is told back as it is taken.
 #[test]
 fn a_preview_says_what_is_taken() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let (_dir, service) = Server::alone(&["--jobs", "0"]);
     let mut table = "Lab North; panel 3\nexported 2026-11-20\nLäng [in];Cycles x1000;Pmax kN\n".to_owned();
     for step in 0..8 {
         table.push_str(&format!("0,{};{},5;23,36\n", 400 + 50 * step, 10 * step));

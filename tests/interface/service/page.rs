@@ -349,7 +349,6 @@ fn the_page_leads_from_readings_to_remaining_life() {
     }
 }
 
-/// With tokens the page asks for one, and goes on with it.
 #[test]
 fn the_page_asks_for_a_token() {
     let Some(page) = Browser::start() else { return };

@@ -6,14 +6,14 @@ use tempfile::tempdir;
 use super::crashes::undisturbed;
 use super::jobs::{with_each_store, with_store};
 use super::{QUICK, SLOW, of, tiny};
-use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife};
+use crate::support::desk::done;
 use crate::support::server::{Answer, Server};
 
 /// A token of this name and role in the store at `place`.
 pub fn token(place: &[&str], name: &str, role: &str) -> String {
-    let output = perilife(std::path::Path::new("."), &[&["token", "add", name, "--role", role], place].concat());
-    assert!(output.status.success(), "{}", texts(&output).1);
-    texts(&output).0.trim().to_owned()
+    let (stdout, _) = done(std::path::Path::new("."), &[&["token", "add", name, "--role", role], place].concat());
+    stdout.trim().to_owned()
 }
 
 /// Somebody with many jobs does not keep the others waiting: owners take turns, each with his own jobs in his order.

@@ -4,10 +4,9 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::{Value, json};
-use tempfile::tempdir;
 
 use crate::support::browser::Browser;
-use crate::support::server::{Server, in_folder};
+use crate::support::server::Server;
 
 const UNKNOWN: &str = "Rig 7, sheet B12\nzeit,riss,kraft,temperatur\n0,9.0,6.1,21.2\n20000,10.2,6.1,21.3\n35000,11.9,6.1,21.4\n\
                        47000,13.8,6.1,21.3\n56000,16.1,6.1,21.2\n62000,18.4,6.1,21.1\n";
@@ -21,9 +20,7 @@ fn picture(page: &Browser, name: &str) {
 #[test]
 fn columns_that_nobody_knows_are_chosen_on_the_page() {
     let Some(page) = Browser::start() else { return };
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    let (dir, service) = Server::alone(&["--jobs", "1"]);
     page.look(1280, 900, "light");
     page.open(&format!("{}/#/measure", service.url));
     page.see("#measured-input, #example");
@@ -60,9 +57,7 @@ fn columns_that_nobody_knows_are_chosen_on_the_page() {
 
 #[test]
 fn a_fit_of_laws_has_a_page() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    let (_dir, service) = Server::alone(&["--jobs", "1"]);
     let row = |k: u32, ratio: f64| {
         let k = f64::from(k);
         format!("{k},{:e},{ratio}\n", 1e-8 * (k / (1.0_f64 - ratio).powf(0.5)).powi(3))

@@ -7,6 +7,7 @@ use tempfile::tempdir;
 
 use super::{QUICK, of};
 use crate::interface::cli::{perilife, texts};
+use crate::support::rows::assert_says;
 use crate::support::server::{Server, in_folder};
 
 #[test]
@@ -49,9 +50,7 @@ fn wrong_input_is_refused_in_the_words_of_the_command() {
 
 #[test]
 fn requests_that_cannot_be_read_are_refused() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0", "--body-mib", "1", "--points", "100000"]);
+    let (_dir, service) = Server::alone(&["--jobs", "0", "--body-mib", "1", "--points", "100000"]);
     let json = "application/json";
     let form = "multipart/form-data; boundary=XX";
     let fine = QUICK.replace("spacing_mm = 1.5", "spacing_mm = 0.1");
@@ -110,9 +109,7 @@ fn requests_that_cannot_be_read_are_refused() {
 /// What a browser is told, and what it is not allowed to do for pages of others.
 #[test]
 fn other_origins_are_kept_out() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let (_dir, service) = Server::alone(&["--jobs", "0"]);
     let body = of("case", QUICK).to_string();
     let sent = |headers: &[(&str, &str)]| {
         service
@@ -145,9 +142,7 @@ fn other_origins_are_kept_out() {
 /// The description names every route that the service has, and Prometheus can read what it counts.
 #[test]
 fn the_service_describes_itself() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let (dir, service) = Server::alone(&["--jobs", "0"]);
     let description = service.get("/openapi.json").expect(200).json();
     let paths: Vec<&String> = description["paths"].as_object().unwrap().keys().collect();
     for path in ["/v1/check", "/v1/measured", "/v1/materials", "/v1/kinds", "/v1/{collection}", "/v1/{collection}/{id}/events"] {
@@ -176,21 +171,20 @@ fn the_service_describes_itself() {
     assert_eq!(kinds["kinds"].as_array().unwrap().iter().collect::<Vec<_>>(), listed);
     service.submit("predictions", &of("case", QUICK));
     let counted = service.get("/metrics").text();
-    for line in [
-        "perilife_http_requests_total{route=\"/v1/{collection}\",method=\"POST\",status=\"202\"} 1",
-        "perilife_jobs{state=\"queued\"} 1",
-    ] {
-        assert!(counted.contains(line), "{line} in {counted}");
-    }
+    assert_says(
+        &counted,
+        &[
+            "perilife_http_requests_total{route=\"/v1/{collection}\",method=\"POST\",status=\"202\"} 1",
+            "perilife_jobs{state=\"queued\"} 1",
+        ],
+    );
 }
 
 /// Who opens connections and says nothing is shown out; others are served meanwhile.
 #[test]
 fn idle_talkers_do_not_block_the_door() {
     use std::io::{Read, Write};
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0", "--connections", "40"]);
+    let (_dir, service) = Server::alone(&["--jobs", "0", "--connections", "40"]);
     let address = service.url.trim_start_matches("http://").to_owned();
     let begun = std::time::Instant::now();
     let mut idle: Vec<_> = (0..39).map(|_| std::net::TcpStream::connect(&address).unwrap()).collect();
@@ -211,9 +205,7 @@ fn idle_talkers_do_not_block_the_door() {
 #[test]
 fn a_refused_body_does_not_cut_off_the_next_request() {
     use std::io::{BufRead, BufReader, Read, Write};
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let (_dir, service) = Server::alone(&["--jobs", "0"]);
     let mut stream = std::net::TcpStream::connect(service.url.trim_start_matches("http://")).unwrap();
     let mut lines = BufReader::new(stream.try_clone().unwrap());
     let mut head = || {

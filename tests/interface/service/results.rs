@@ -8,14 +8,8 @@ use serde_json::{Value, json};
 use tempfile::tempdir;
 
 use super::{FOR_PARAVIEW, QUICK, SLOW, of};
-use crate::interface::cli::{perilife, texts};
+use crate::support::desk::done;
 use crate::support::server::{Server, in_folder};
-
-fn run(folder: &Path, arguments: &[&str]) -> String {
-    let output = perilife(folder, arguments);
-    assert!(output.status.success(), "{}", texts(&output).1);
-    texts(&output).0
-}
 
 fn server(folder: &Path) -> Server {
     let place = in_folder(&folder.join("service"));
@@ -38,8 +32,8 @@ fn a_prediction_has_the_files_of_the_command() {
     for (name, text) in [("quick", &*(QUICK.to_owned() + FOR_PARAVIEW)), ("slow", SLOW)] {
         let job = service.submit("predictions", &of(name, text));
         fs::write(folder.join(format!("{name}.toml")), text).unwrap();
-        run(folder, &["predict", &format!("{name}.toml"), "--out", name]);
-        let done = service.succeeded(&job);
+        done(folder, &["predict", &format!("{name}.toml"), "--out", name]);
+        let ended = service.succeeded(&job);
         for file in fs::read_dir(folder.join(name)).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()) {
             match file.as_str() {
                 ".perilife" => {}
@@ -48,7 +42,7 @@ fn a_prediction_has_the_files_of_the_command() {
                     let [ours, theirs] = [service.file(&job, &file), fs::read(folder.join(name).join(&file)).unwrap()];
                     let [ours, theirs] = [ours, theirs].map(|bytes| timeless(serde_json::from_slice(&bytes).unwrap()));
                     assert_eq!(ours, theirs, "{name}");
-                    assert_eq!(done["summary"]["life_cycles"], theirs["life_cycles"]);
+                    assert_eq!(ended["summary"]["life_cycles"], theirs["life_cycles"]);
                 }
                 file => {
                     assert!(
@@ -58,23 +52,23 @@ fn a_prediction_has_the_files_of_the_command() {
                 }
             }
         }
-        let listed: Vec<&str> = done["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();
+        let listed: Vec<&str> = ended["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();
         // The mark of the command is no file of the service, which adds the report.
         assert_eq!(listed.len(), fs::read_dir(folder.join(name)).unwrap().count(), "{listed:?}");
-        run(folder, &["report", name, "--out", "report.html"]);
+        done(folder, &["report", name, "--out", "report.html"]);
         let plain =
             |text: Vec<u8>| String::from_utf8(text).unwrap().lines().filter(|line| !is_of_this_run(line)).collect::<String>();
         let [ours, theirs] = [service.file(&job, "report.html"), fs::read(folder.join("report.html")).unwrap()].map(plain);
         assert!(ours.len() > 1000 && ours == theirs, "{name}: the report differs");
         fs::remove_file(folder.join("report.html")).unwrap();
-        for file in done["files"].as_array().unwrap() {
+        for file in ended["files"].as_array().unwrap() {
             let answer = service.get(file["href"].as_str().unwrap()).expect(200);
             assert_eq!(answer.body.len() as i64, file["bytes"].as_i64().unwrap());
             assert!(answer.header("content-type").unwrap().starts_with(file["media_type"].as_str().unwrap()));
             assert!(answer.header("content-security-policy").unwrap().contains("sandbox"), "results are never run");
         }
         resampled_as_exported(folder, &service, name, &job);
-        remaining_life(&service, &job, &done);
+        remaining_life(&service, &job, &ended);
     }
 }
 
@@ -86,7 +80,7 @@ fn is_of_this_run(line: &str) -> bool {
 /// `points` and `every_cycles` are those of `perilife export`.
 fn resampled_as_exported(folder: &Path, service: &Server, name: &str, job: &str) {
     for (query, option) in [("points=40", ["--points", "40"]), ("every_cycles=777.5", ["--every-cycles", "777.5"])] {
-        run(folder, &["export", name, "--out", "export.csv", option[0], option[1]]);
+        done(folder, &["export", name, "--out", "export.csv", option[0], option[1]]);
         assert_eq!(service.file(job, &format!("a_n.csv?{query}")), fs::read(folder.join("export.csv")).unwrap(), "{query}");
     }
     for (query, status) in [
@@ -102,10 +96,10 @@ fn resampled_as_exported(folder: &Path, service: &Server, name: &str, job: &str)
 }
 
 /// Remaining life is what the curve says between its rows.
-fn remaining_life(service: &Server, job: &str, done: &Value) {
+fn remaining_life(service: &Server, job: &str, ended: &Value) {
     let number = |value: &Value| value.as_f64().unwrap();
-    let (from, to) = (number(&done["summary"]["crack_length_initial_mm"]), number(&done["summary"]["crack_length_final_mm"]));
-    let life = number(&done["summary"]["life_cycles"]);
+    let (from, to) = (number(&ended["summary"]["crack_length_initial_mm"]), number(&ended["summary"]["crack_length_final_mm"]));
+    let life = number(&ended["summary"]["life_cycles"]);
     let middle = 0.5 * (from + to);
     let answer = service.get(&format!("{job}/remaining?crack_length_mm={middle}&factor=3")).expect(200).json();
     let table = String::from_utf8(service.file(job, "a_n.csv")).unwrap();
@@ -175,8 +169,8 @@ const TEST: &str = "[measured]\nfiles = [\"curve.csv\"]\n[specimen]\nkind = \"mi
 /// Readings as the quick plate would give them.
 fn readings(folder: &Path) -> String {
     fs::write(folder.join("measured.toml"), QUICK).unwrap();
-    run(folder, &["predict", "measured.toml", "--out", "measured"]);
-    run(folder, &["export", "measured", "--out", "measured.csv", "--points", "30"]);
+    done(folder, &["predict", "measured.toml", "--out", "measured"]);
+    done(folder, &["export", "measured", "--out", "measured.csv", "--points", "30"]);
     let table = fs::read_to_string(folder.join("measured.csv")).unwrap();
     let rows = table.lines().skip(1).map(|line| line.split(',').take(2).collect::<Vec<_>>().join(",") + "\n");
     "cycles,crack_length_mm\n".to_owned() + &rows.collect::<String>()
@@ -193,10 +187,10 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
     for (name, method) in [("bonds", "spacing_mm = 1.5"), ("hand", "method = \"handbook\"")] {
         let text = model(method);
         fs::write(folder.join(format!("{name}.toml")), &text).unwrap();
-        run(folder, &["calibrate", &format!("{name}.toml"), "--out", name]);
+        done(folder, &["calibrate", &format!("{name}.toml"), "--out", name]);
         // As JSON with the files in it, and as a form that names no files.
         let job = service.submit("calibrations", &json!({ "name": name, "input": text, "files": { "curve.csv": curve } }));
-        let done = service.succeeded(&job);
+        let ended = service.succeeded(&job);
         let tables: &[&str] = if cfg!(feature = "tables") { &["fit_curves.parquet"] } else { &[] };
         for file in ["fitted.toml", "fit_curves.csv", "fit_band.csv", "fit.svg", "da_dn.svg"].iter().chain(tables) {
             assert!(service.file(&job, file) == fs::read(folder.join(name).join(file)).unwrap(), "{name}: {file} differs");
@@ -223,19 +217,19 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
         } else {
             QUICK.to_owned()
         };
-        let body = json!({ "name": "case", "input": case, "calibration": done["id"] });
+        let body = json!({ "name": "case", "input": case, "calibration": ended["id"] });
         let prediction = service.submit("predictions", &body);
         fs::write(
             folder.join("case.toml"),
             case.replace("a = 6450.0\np = 2.86\nhorizon_mm = 3.015\n", &format!("fitted = \"{name}/fitted.toml\"\n")),
         )
         .unwrap();
-        run(folder, &["predict", "case.toml", "--out", "case"]);
-        assert_eq!(service.succeeded(&prediction)["calibration"], done["id"]);
+        done(folder, &["predict", "case.toml", "--out", "case"]);
+        assert_eq!(service.succeeded(&prediction)["calibration"], ended["id"]);
         assert!(service.file(&prediction, "a_n.csv") == fs::read(folder.join("case/a_n.csv")).unwrap(), "{name}: with the fit");
 
         // What is left has the band of the table, and the interval comes from its low end, as on the command line.
-        let words = run(folder, &["predict", "case.toml", "--out", "case", "--inspect-from", "14", "--json"]);
+        let (words, _) = done(folder, &["predict", "case.toml", "--out", "case", "--inspect-from", "14", "--json"]);
         let asked = serde_json::from_str::<Value>(&words).unwrap()["inspection"].clone();
         let left = service.get(&format!("{prediction}/remaining?crack_length_mm=14")).expect(200).json();
         assert_eq!(left["has_band"], true, "{left}");
@@ -253,7 +247,7 @@ fn the_band_of_a_fit_is_about_its_curve() {
     let folder = dir.path();
     fs::write(folder.join("curve.csv"), readings(folder)).unwrap();
     fs::write(folder.join("hand.toml"), format!("{TEST}[model]\nmethod = \"handbook\"\n")).unwrap();
-    run(folder, &["calibrate", "hand.toml", "--out", "fit"]);
+    done(folder, &["calibrate", "hand.toml", "--out", "fit"]);
     let table = fs::read_to_string(folder.join("fit/fit_band.csv")).unwrap();
     let mut lines = table.lines();
     assert_eq!(lines.next(), Some("crack_length_mm,cycles_fitted,cycles_low,cycles_high"));
@@ -287,7 +281,7 @@ fn inputs_are_looked_at_as_by_the_command() {
     let folder = dir.path();
     let service = server(folder);
     fs::write(folder.join("case.toml"), QUICK).unwrap();
-    let theirs: Value = serde_json::from_str(&run(folder, &["check", "case.toml", "--json"])).unwrap();
+    let theirs: Value = serde_json::from_str(&done(folder, &["check", "case.toml", "--json"]).0).unwrap();
     let mut ours = service.post("/v1/check", &json!({ "name": "case", "input": QUICK })).expect(200).json();
     // Beside its form the plate is drawn as that of a result is, without a path.
     let drawn = ours.as_object_mut().unwrap().remove("drawing").unwrap();

@@ -8,6 +8,7 @@ use tempfile::tempdir;
 use super::queue::token;
 use super::{QUICK, of};
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::desk::done;
 use crate::support::server::{Server, in_folder};
 
 #[test]
@@ -17,9 +18,8 @@ fn roles_are_kept() {
     let data = folder.join("service");
     let place = in_folder(&data);
     let token = |name: &str, role: &str| {
-        let output = perilife(folder, &["token", "--data", data.to_str().unwrap(), "add", name, "--role", role]);
-        assert!(output.status.success(), "{}", texts(&output).1);
-        texts(&output).0.trim().to_owned()
+        let (stdout, _) = done(folder, &["token", "--data", data.to_str().unwrap(), "add", name, "--role", role]);
+        stdout.trim().to_owned()
     };
     let [reader, runner, other, admin] =
         [("ann", "read"), ("bob", "run"), ("cy", "run"), ("dee", "admin")].map(|(name, role)| token(name, role));
