@@ -86,9 +86,9 @@ impl MisfitAtEnds {
         let end = |end: Misfit| {
             let size = end.rate_over_law_percent.abs();
             let (digits, sense) = (usize::from(size < 99.95), if end.rate_over_law_percent < 0.0 { "slower" } else { "faster" });
-            let [from, to] = [end.delta_k_from_mpa_sqrt_m, end.delta_k_to_mpa_sqrt_m];
-            let places = usize::from(from < 9.995) + 1;
-            format!("{size:.digits$} % {sense} at {from:.places$} to {to:.places$}")
+            let ends = [end.delta_k_from_mpa_sqrt_m, end.delta_k_to_mpa_sqrt_m];
+            let [from, to] = ends.map(|k| format!("{k:.*}", 1 + usize::from(k < 9.995)));
+            format!("{size:.digits$} % {sense} at {from} to {to}")
         };
         let ends: Vec<String> = [self.low, self.high].into_iter().flatten().map(end).collect();
         ends.join(", ").replacen("at", "at ΔK", 1)
