@@ -162,8 +162,8 @@ export function createChart(container, { name, label, title, x: ofX, y: ofY, rat
     }));
     const shown = series.filter((one) => one.name && ["line", "points", "thin", "crosses"].includes(one.kind));
     legend.hidden = atEnds().length > 0 || shown.length < 2;
-    show(legend, shown.map((one) => element("span", { class: "nowrap" },
-      shape("svg", { width: 26, height: 10, "aria-hidden": "true" }, swatch(one)), ` ${one.name}  `)));
+    show(legend, shown.flatMap((one) => [element("span", { class: "nowrap" },
+      shape("svg", { width: 26, height: 10, "aria-hidden": "true" }, swatch(one)), ` ${one.name} `), " "]));
     drawCursor();
     if (shared) move(...shared);
   }
