@@ -305,21 +305,6 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.see("#job[data-job-state=succeeded]");
     page.see("[data-value=life_cycles]");
 
-    // Stopped where it is, a run keeps its curve.
-    page.open(&format!("{}/#/predict?from={first}", service.url));
-    page.see("#predict:not([disabled])");
-    // Finer, so that it has not ended when the wish comes to its worker.
-    page.fill("#view-predict [data-key='model.spacing_mm']", "0.5");
-    page.see("#predict:not([disabled])");
-    let stopped = walk.start("#predict");
-    page.click("[data-action=stop]");
-    page.see("#job[data-job-state=succeeded]");
-    page.until("document.querySelector('[data-part=result]')?.textContent.includes('Stopped early at')");
-    let summary = service.get(&format!("/v1/predictions/{stopped}")).json()["summary"].clone();
-    assert!(summary["stop_reason"] == "stopped", "{summary:#}");
-    assert!(summary["crack_length_final_mm"].as_f64() < done["summary"]["crack_length_final_mm"].as_f64());
-    walk.look("16_stopped");
-
     // Cancel and delete.
     page.open(&format!("{}/#/predict?from={first}", service.url));
     page.see("#predict:not([disabled])");
