@@ -6,7 +6,7 @@ use toml::{Table, Value};
 
 use crate::criterion::Criterion;
 use crate::exponent::{Exponent, FitKeys, delta_k_ratio, exponent};
-use perilife_base::error::{Result, fail_if, input, input_missing};
+use perilife_base::error::{Error, InputError, Result, fail_if, input, input_missing};
 use perilife_base::input::{Document, Folder, sha256};
 use perilife_base::keys::{Need, Plain, all, key, length, section};
 use perilife_base::kinds::Named as _;
@@ -109,8 +109,10 @@ impl CalibrationCase {
                 Err(error) => {
                     let read = keys().and_then(|keys| Ok((readings(&keys, &document.folder)?.0, keys)));
                     // Why the readings do not give what is missing is the mistake then.
-                    let told = error.to_string();
-                    let is_theirs = told.contains("loading: is missing") || told.contains("crack_length_mm: is missing");
+                    let lacks = |wrong: &InputError| {
+                        wrong.value.is_none() && matches!(wrong.key.as_deref(), Some("loading" | "specimen.crack_length_mm"))
+                    };
+                    let is_theirs = matches!(&error, Error::Input(wrong) if lacks(wrong) || wrong.more.iter().any(lacks));
                     let notes = match read.and_then(|(read, keys)| complete(&mut table, &read, &keys)) {
                         Err(unread) if is_theirs => return Err(unread),
                         Ok(notes) if !notes.is_empty() => notes,

@@ -27,14 +27,15 @@ pub struct Args {
 
 /// Checks the file, prints what was understood and draws the picture.
 pub fn run(args: &Args) -> Result<()> {
-    let checked = check_file(&args.file, &args.set)?;
-    match &args.picture {
-        Some(_) if checked.drawing.is_empty() => args.console.warn("no picture is written: tables of rates have no plate"),
-        Some(path) => {
-            let sort = Sort { option: "--picture", sign: SIGN.as_bytes() };
-            OutputFile::claim(path, sort, &checked.provenance)?.write(checked.drawing.as_bytes())?;
+    let mut checked = check_file(&args.file, &args.set)?;
+    if let Some(path) = &args.picture {
+        match std::mem::take(&mut checked.drawn).svg() {
+            None => args.console.warn("no picture is written: tables of rates have no plate"),
+            Some(drawing) => {
+                let sort = Sort { option: "--picture", sign: SIGN.as_bytes() };
+                OutputFile::claim(path, sort, &checked.provenance)?.write(drawing.as_bytes())?;
+            }
         }
-        None => {}
     }
     let (long, short): (Vec<_>, Vec<_>) = checked.lines.iter().partition(|line| line.is_detail);
     let [mut lines, details] =

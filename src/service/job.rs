@@ -22,8 +22,6 @@ use perilife_calibration::inspection::{FACTOR, InspectFrom};
 use perilife_growth::case::remove_law;
 use perilife_measured::{Column, Import, Layout, MeasuredCurve, Named, Shape, Survey, survey};
 use perilife_results::chart::Size;
-use perilife_results::curve::RunTables;
-use perilife_results::pictures::plate::plate_svg;
 pub use perilife_runner::Kind as JobKind;
 use perilife_runner::{Task, check};
 
@@ -246,8 +244,7 @@ impl Look {
                 }
                 let checked = check::check(&document, &task)?;
                 let mut object = checked.json();
-                let of_plate = |plate| plate_svg(plate, &RunTables::default(), DRAWING);
-                object["drawing"] = checked.plate.as_ref().map_or(checked.drawing, of_plate).into();
+                object["drawing"] = checked.drawn.beside_form(DRAWING).unwrap_or_default().into();
                 Ok(object.to_string())
             }
         }

@@ -1,6 +1,5 @@
 //! Growth rates of curves whose rate is known.
 
-use perilife_base::input::Folder;
 use perilife_base::units::{MM, MPA};
 use perilife_calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates, threshold};
 use perilife_growth::case::Case;
@@ -9,20 +8,11 @@ use perilife_plate::material::Material;
 use perilife_plate::specimen::SpecimenKind;
 
 use super::misfit::{delta_k, exact_curve};
+use crate::support::median::virkler_panel as panel;
 
 fn curve(cycles: Vec<f64>, lengths_mm: &[f64]) -> MeasuredCurve {
     let crack_length = lengths_mm.iter().map(|a| a * MM).collect();
     MeasuredCurve::new("S", cycles, crack_length)
-}
-
-/// The panel of Virkler et al. (1979) under its load.
-fn panel() -> Case {
-    let text = "specimen = { kind = \"middle_tension\", width_mm = 152.4, length_mm = 300.0, thickness_mm = 2.54, crack_length_mm = 9.0 }
-        material = { youngs_modulus_gpa = 71.0, poisson_ratio = 0.33, yield_strength_mpa = 345.0 }
-        loading = { stress_max_mpa = 60.35, stress_ratio = 0.2 }
-        model = { method = \"handbook\" }
-        fatigue = { paris_c_mm_per_cycle = 1e-8, paris_m = 3.0 }";
-    Case::from_toml(text, "panel", Folder::none(), &[]).unwrap()
 }
 
 #[test]

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use perilife_base::input::Folder;
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA};
 use perilife_calibration::calibrate::calibrate;
 use perilife_calibration::case::CalibrationCase;
@@ -12,11 +11,10 @@ use perilife_calibration::fit::{Fit, FitTask, fit};
 use perilife_calibration::median::pointwise_median_at;
 use perilife_calibration::power_law::PowerLaw;
 use perilife_calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates};
-use perilife_growth::case::Case;
 use perilife_growth::predict::Silent;
 use perilife_measured::{Import, Measured, MeasuredCurve, read};
 
-use crate::support::median::pointwise_median;
+use crate::support::median::{pointwise_median, virkler_panel as panel};
 use crate::support::shared::shared;
 use std::fmt::Write as _;
 
@@ -61,16 +59,6 @@ fn the_median_at_every_reading_is_the_shared_one() {
 pub fn delta_k(a: f64) -> f64 {
     let pi = std::f64::consts::PI;
     48.28 * MPA * (pi * a / (pi * a / (152.4 * MM)).cos()).sqrt()
-}
-
-/// The panel of Virkler et al. (1979) under its load.
-fn panel() -> Case {
-    let text = "specimen = { kind = \"middle_tension\", width_mm = 152.4, length_mm = 300.0, thickness_mm = 2.54, crack_length_mm = 9.0 }
-        material = { youngs_modulus_gpa = 71.0, poisson_ratio = 0.33, yield_strength_mpa = 345.0 }
-        loading = { stress_max_mpa = 60.35, stress_ratio = 0.2 }
-        model = { method = \"handbook\" }
-        fatigue = { paris_c_mm_per_cycle = 1e-8, paris_m = 3.0 }";
-    Case::from_toml(text, "panel", Folder::none(), &[]).unwrap()
 }
 
 fn rates_with_delta_k(curve: &MeasuredCurve, method: RateMethod) -> Vec<RatePoint> {

@@ -31,7 +31,7 @@ use super::sharing::Sharing;
 use super::surface_correction::settled;
 use crate::bond_law::stencil::{Stencil, StencilBond};
 use least_squares::{BondGain, Gain, Link, Problem};
-use perilife_base::error::{Error, Result};
+use perilife_base::error::Result;
 use perilife_plate::specimen::facets::Facet;
 
 /// Rows whose bonds change behind the points that miss a neighbour: ahead of the end of a slot there are fewer bonds than
@@ -39,7 +39,6 @@ use perilife_plate::specimen::facets::Facet;
 pub const ROWS_MORE: usize = 1;
 /// Rows whose bonds change at least; short horizons have fewer bonds than equations otherwise.
 pub const ROWS_LEAST: usize = 3;
-pub const BOUNDS: [f64; 2] = [0.2, 5.0];
 
 /// Rows of points that a consistent load reaches: the fewer, the more the last row takes. Stencils with no more bonds than a
 /// point has equations cannot pass the load on from a third row.
@@ -61,13 +60,7 @@ pub(super) fn balance(body: &mut Body, rim: &[Facet], sharing: &Sharing) -> Resu
     let (links, sought) = equations.sought(body, &body.multiplier);
     // Inside the plate all bonds are there with multiplier 1.
     let missing = equations.missing(body, &gains, |_| 1.0, |bond| body.multiplier[bond]);
-    let change = Problem::new(&gains, links, missing).solve(BOUNDS.map(|bound| bound - 1.0)).ok_or_else(|| {
-        Error::Mechanics(
-            "the balanced surface correction found no bond multipliers for this outline; reduce the spacing, or use \
-             model.surface_correction = \"volume_and_surface\""
-                .to_owned(),
-        )
-    })?;
+    let change = Problem::new(&gains, links, missing).solve("this outline")?;
     for (bond, change) in sought.into_iter().zip(change) {
         body.multiplier[bond] = settled(1.0 + change);
     }

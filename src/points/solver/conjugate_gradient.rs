@@ -20,7 +20,7 @@ pub(super) const TOLERANCE: f64 = 1e-11;
 const ITERATIONS_MAX: usize = 400;
 /// Work of the loads over that of the displacement a solve starts from at which the plate is a mechanism, and every how many
 /// iterations that is asked.
-pub(super) const LOST_STIFFNESS: f64 = 1e3;
+const LOST_STIFFNESS: f64 = 1e3;
 const ITERATIONS_PER_LOOK: usize = 20;
 /// Iterations of all solves beyond those of a fresh hierarchy after which it is rebuilt: to build it takes as long.
 const ITERATIONS_OF_BUILDING: usize = 12;
@@ -140,9 +140,9 @@ impl<const N: usize> MultigridSolver<N> {
             if advance(&layout, alpha, [u, &mut self.r], [&self.p, &self.q]).sqrt() <= target {
                 return Ok(Some(iteration));
             }
-            if iteration % ITERATIONS_PER_LOOK == 0 && work_before > 0.0 {
+            if iteration % ITERATIONS_PER_LOOK == 0 {
                 let work = dot(&layout, f, u);
-                if work > LOST_STIFFNESS * work_before {
+                if is_mechanism(work, work_before) {
                     tracing::debug!(iteration, work, work_before, "the plate loses its stiffness");
                     return Err(Error::LossOfStiffness);
                 }
@@ -174,4 +174,9 @@ fn advance(layout: &Layout, alpha: f64, [u, r]: [&mut [f64]; 2], [p, q]: [&[f64]
         })
         .collect();
     squares.iter().sum()
+}
+
+/// Whether a plate is a mechanism by the work of its loads, which was another before bonds broke (0: not known).
+pub(super) fn is_mechanism(work: f64, before: f64) -> bool {
+    before > 0.0 && work > LOST_STIFFNESS * before
 }

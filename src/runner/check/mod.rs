@@ -25,9 +25,11 @@ use perilife_calibration::template::refuse_table;
 use perilife_growth::case::{Case, needs};
 use perilife_growth::predict::judgement::refuse_beforehand;
 use perilife_plate::specimen::{Edge, Point, Specimen};
+use perilife_results::chart::Size;
 use perilife_results::checks::{self, Check};
+use perilife_results::curve::RunTables;
 use perilife_results::model_words::{self, mm, short};
-use perilife_results::pictures::plate::Plate;
+use perilife_results::pictures::plate::{Plate, plate_svg};
 use perilife_results::specimen_picture::sketch::{HELD, LOAD, Sketch};
 use perilife_results::specimen_picture::{drawing, specimen_svg};
 use perilife_results::spectrum::{SpectrumCurves, curves};
@@ -46,18 +48,44 @@ pub struct Checked {
     pub lines: Vec<Line>,
     pub checks: Vec<Check>,
     pub warnings: Vec<String>,
-    /// Specimen, cracks, loads and supports as SVG.
     #[serde(skip)]
-    pub drawing: String,
-    /// The specimen of a page, which draws no sizes; none of scenes.
-    #[serde(skip)]
-    pub plate: Option<Plate>,
+    pub drawn: Drawn,
     /// Exceedances and ranges of a pass of a spectrum, for others to draw; none of other loads.
     pub spectrum: Option<SpectrumCurves>,
     #[serde(rename = "case")]
     pub echo: Value,
     #[serde(skip)]
     pub provenance: Provenance,
+}
+
+/// What can be drawn of an input: specimen, cracks, loads and supports.
+#[derive(Debug, Default)]
+pub enum Drawn {
+    /// Tables of rates have no plate.
+    #[default]
+    Nothing,
+    Plate(Box<Case>),
+    /// SVG.
+    Scene(String),
+}
+
+impl Drawn {
+    /// As SVG, with sizes.
+    pub fn svg(self) -> Option<String> {
+        match self {
+            Drawn::Nothing => None,
+            Drawn::Plate(case) => Some(specimen_svg(&case)),
+            Drawn::Scene(svg) => Some(svg),
+        }
+    }
+
+    /// As SVG; the plate without sizes, as that of a result is.
+    pub fn beside_form(self, size: Size) -> Option<String> {
+        match self {
+            Drawn::Plate(case) => Some(plate_svg(&Plate::of(&case), &RunTables::default(), size)),
+            other => other.svg(),
+        }
+    }
 }
 
 impl Checked {
@@ -135,24 +163,23 @@ fn checked_case(document: &Document, kind: &'static str, case: &Case, warnings: 
     let warnings = [warnings, &preview.warnings].concat();
     let mut lines = case_lines(case, preview.points);
     lines.push(line("computing", budget.words()));
-    let (drawing, provenance) = (specimen_svg(case), document.folder.opened().so_far());
-    let plate = Some(Plate::of(case));
+    let (drawn, provenance) = (Drawn::Plate(Box::new(case.clone())), document.folder.opened().so_far());
     let spectrum = case.loading.spectrum.as_deref().map(curves);
     let (name, echo) = (case.name.clone(), case.echo.clone());
-    Ok(Checked { ok: true, kind, name, lines, warnings, drawing, plate, spectrum, echo, provenance, ..Checked::default() })
+    Ok(Checked { ok: true, kind, name, lines, warnings, drawn, spectrum, echo, provenance, ..Checked::default() })
 }
 
 /// A fit of laws has a plate only where its rates come from readings.
 fn checked_laws(document: &Document, case: &LawCase) -> Checked {
     let mut lines = vec![rates_line(case)];
-    let (mut drawing, mut plate) = (String::new(), None);
+    let mut drawn = Drawn::Nothing;
     if let Some(test) = &case.test {
         lines.extend(case_lines(&test.case, "none: rates over handbook K".to_owned()));
-        (drawing, plate) = (specimen_svg(&test.case), Some(Plate::of(&test.case)));
+        drawn = Drawn::Plate(Box::new(test.case.clone()));
     }
     let provenance = document.folder.opened().so_far();
     let (name, warnings, echo) = (case.name.clone(), case.warnings.clone(), case.echo.clone());
-    Checked { ok: true, kind: "calibration", name, lines, warnings, drawing, plate, echo, provenance, ..Checked::default() }
+    Checked { ok: true, kind: "calibration", name, lines, warnings, drawn, echo, provenance, ..Checked::default() }
 }
 
 fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
@@ -165,8 +192,8 @@ fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
     let more = told.len().saturating_sub(LINES_MAX);
     told.truncate(LINES_MAX);
     told.extend((more > 0).then(|| format!("and {more} more loads and supports")));
-    let drawing = scene_svg(scene, &procedure_words(scene), &told);
-    Ok(Checked { ok: true, kind: "fracture", name, lines, warnings, drawing, echo, provenance, ..Checked::default() })
+    let drawn = Drawn::Scene(scene_svg(scene, &procedure_words(scene), &told));
+    Ok(Checked { ok: true, kind: "fracture", name, lines, warnings, drawn, echo, provenance, ..Checked::default() })
 }
 
 /// Lines about loads and supports that fit below the drawing of a scene.

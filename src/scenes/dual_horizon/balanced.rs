@@ -9,11 +9,11 @@ use std::collections::BTreeMap;
 
 use super::levels::Levels;
 use super::loads::Sharing;
-use perilife_base::error::{Error, Result};
+use perilife_base::error::Result;
 use perilife_plate::specimen::Specimen;
 use perilife_plate::specimen::facets::facets;
 use perilife_points::body::balanced::least_squares::{BondGain, Gain, Link, Problem};
-use perilife_points::body::balanced::{BOUNDS, ROWS_LEAST, ROWS_MORE, asked, gain};
+use perilife_points::body::balanced::{ROWS_LEAST, ROWS_MORE, asked, gain};
 use perilife_points::bond_law::stencil::Stencil;
 use perilife_points::net::Net;
 
@@ -59,13 +59,7 @@ pub fn balance(net: &mut Net, specimen: &Specimen, levels: &Levels, stencils: &[
             changed.push(&pair.bonds);
         }
     }
-    let change = Problem::new(&gains, links, missing).solve(BOUNDS.map(|bound| bound - 1.0)).ok_or_else(|| {
-        Error::Mechanics(
-            "the balanced surface correction found no bond multipliers for these points; reduce the spacing, or use \
-             model.surface_correction = \"volume_and_surface\""
-                .to_owned(),
-        )
-    })?;
+    let change = Problem::new(&gains, links, missing).solve("these points")?;
     for (bonds, change) in changed.into_iter().zip(change) {
         for &b in bonds {
             let bond = &mut net.bonds[b as usize];

@@ -119,8 +119,7 @@ fn ended(order: &Run, room: &mut Room, tell: &(dyn Fn(&News) -> bool + Sync), is
         Task::Fit(Calibration::Lives(calibration)) => (calibration.case.specimen.cracks.clone(), None),
         _ => (Vec::new(), None),
     };
-    let mut teller = Teller::new(&cracks, &shown.unwrap_or_default(), keep, order.checkpoint_every);
-    teller.is_enough = is_enough;
+    let teller = Teller::new(&cracks, &shown.unwrap_or_default(), (keep, order.checkpoint_every), is_enough);
     let (done, end) = channel();
     std::thread::scope(|scope| {
         scope.spawn(|| {
@@ -205,7 +204,7 @@ pub struct Teller<'a> {
     keep_every: Duration,
     started: Instant,
     /// Whether a user takes the curve so far.
-    pub is_enough: Arc<AtomicBool>,
+    is_enough: Arc<AtomicBool>,
     /// What the run does before it has rows to show.
     work: Arc<Watch>,
     /// Whether nobody has shown any of its curve yet.
@@ -253,7 +252,12 @@ const OVER_COST: u32 = 20;
 
 impl<'a> Teller<'a> {
     /// For a run of a plate with these cracks, whose curve so far is `growth`.
-    pub fn new(cracks: &'a [Crack], growth: &Growth, keep: Option<Keep<'a>>, keep_every: Duration) -> Self {
+    pub fn new(
+        cracks: &'a [Crack],
+        growth: &Growth,
+        (keep, keep_every): (Option<Keep<'a>>, Duration),
+        is_enough: Arc<AtomicBool>,
+    ) -> Self {
         let tips = growth.tips.first().map_or(0, Vec::len);
         let path = |tip: usize| growth.tips.iter().filter_map(|entry| Some(entry.get(tip)?.map(|mm| mm * MM))).collect();
         let told = Pending {
@@ -270,7 +274,6 @@ impl<'a> Teller<'a> {
         };
         let is_fresh = growth.cycles.is_empty();
         let (told, drawn) = (Mutex::new(told), Mutex::default());
-        let is_enough = Arc::default();
         Teller { is_enough, cracks, keep, keep_every, started: Instant::now(), work: Arc::default(), is_fresh, told, drawn }
     }
 

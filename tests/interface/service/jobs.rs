@@ -8,7 +8,7 @@ use tempfile::tempdir;
 
 use super::{FOR_PARAVIEW, QUICK, SLOW, of, tiny};
 use crate::support::postgres::Postgres;
-use crate::support::server::{PATIENCE, Server, in_folder};
+use crate::support::server::{PATIENCE, Server, in_folder, wait};
 
 /// Does a test with each store that this machine has: claims, fences, clocks, tables and waiting are SQL and messages of each.
 pub fn with_each_store(name: &str, test: impl Fn(&[&str])) {
@@ -98,6 +98,25 @@ fn a_job_can_be_cancelled_and_deleted() {
             service.send("DELETE", job, &[], b"").expect(204);
             service.get(job).expect(404);
         }
+    });
+}
+
+#[test]
+fn a_job_can_be_stopped_with_its_curve() {
+    with_store("stopped", |place| {
+        let service = Server::start(place, &["--jobs", "1"]);
+        let whole = service.submit("predictions", &of("whole", SLOW));
+        let whole = service.succeeded(&whole)["summary"].clone();
+        let running = service.submit("predictions", &of("slow", SLOW));
+        // A run has a curve of two rows when it has told of growth.
+        wait("it grows", || service.get(&running).json()["progress"]["cycles"].as_f64().is_some_and(|cycles| cycles > 0.0));
+        service.post(&format!("{running}/cancel?keep=true"), &json!({})).expect(202);
+        let summary = service.succeeded(&running)["summary"].clone();
+        assert!(summary["stop_reason"] == "stopped" && whole["stop_reason"] != "stopped", "{summary}");
+        let curve = String::from_utf8(service.file(&running, "a_n.csv")).unwrap();
+        let last: f64 = curve.lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
+        let [life, of_whole] = [&summary, &whole].map(|summary| summary["life_cycles"].as_f64().unwrap());
+        assert!(0.0 < life && life < of_whole && (last / life - 1.0).abs() < 1e-6, "{last}, {life} of {of_whole}");
     });
 }
 

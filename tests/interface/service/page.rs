@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use tempfile::tempdir;
 
+use super::{SLOW, of};
 use crate::interface::cli::perilife;
 use crate::support::browser::Browser;
 use crate::support::server::{Server, in_folder};
@@ -304,6 +305,14 @@ fn the_page_leads_from_readings_to_remaining_life() {
     walk.start("#sweep-start");
     page.see("#job[data-job-state=succeeded]");
     page.see("[data-value=life_cycles]");
+
+    // Stopped where it is, a run keeps its curve.
+    let running = service.submit("predictions", &of("stopped", SLOW));
+    page.open(&format!("{}{}", service.url, running.replace("/v1/", "/#/")));
+    page.click("[data-action=stop]");
+    page.see("#job[data-job-state=succeeded]");
+    page.until("document.querySelector('[data-part=result]')?.textContent.includes('Stopped early at')");
+    walk.look("16_stopped");
 
     // Cancel and delete.
     page.open(&format!("{}/#/predict?from={first}", service.url));

@@ -12,8 +12,8 @@
 
 use rayon::prelude::*;
 
-use super::least_squares::Problem;
-use super::{BOUNDS, Equations, areas, gains, load_rows};
+use super::least_squares::{BOUNDS, Problem};
+use super::{Equations, areas, gains, load_rows};
 use crate::body::pre_crack::{as_cut, faces, places_near};
 use crate::body::sharing::linear_shares;
 use crate::body::{Body, Bond};

@@ -12,9 +12,12 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use rayon::prelude::*;
 
 use crate::body::block_cholesky::{Factor, Structure};
+use perilife_base::error::{Error, Result};
 
 /// Equations of a point: four of force, two of rotation.
 pub(super) const EQUATIONS: usize = 6;
+/// Least and largest multiplier of a bond.
+pub const BOUNDS: [f64; 2] = [0.2, 5.0];
 /// ε of the equations of force: the least at which the factor is sound, and larger ones for rims that no multipliers
 /// within the bounds can serve.
 const SOFTNESS: [f64; 3] = [1e-7, 1e-5, 1e-3];
@@ -77,9 +80,15 @@ impl<'a> Problem<'a> {
         Problem { gains, links, missing }
     }
 
-    /// The changes within their bounds, with the smallest softness that Newton's method manages; `None` if it manages none.
-    pub fn solve(&self, bounds: [f64; 2]) -> Option<Vec<f64>> {
-        self.solve_to(&SOFTNESS, bounds)
+    /// The changes of multipliers within [`BOUNDS`], with the smallest softness that Newton's method manages.
+    /// Errors: it manages none for the points of `these`.
+    pub fn solve(&self, these: &str) -> Result<Vec<f64>> {
+        self.solve_to(&SOFTNESS, BOUNDS.map(|bound| bound - 1.0)).ok_or_else(|| {
+            Error::Mechanics(format!(
+                "the balanced surface correction found no bond multipliers for {these}; reduce the spacing, or use \
+                 model.surface_correction = \"volume_and_surface\""
+            ))
+        })
     }
 
     /// The same with other values of ε of the equations of force, the first of them that Newton's method manages.

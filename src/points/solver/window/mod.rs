@@ -9,7 +9,7 @@ pub mod condense;
 pub mod update;
 
 use super::assembly::{MIXED, Mixed, Springs};
-use super::conjugate_gradient::{LOST_STIFFNESS, MultigridSolver};
+use super::conjugate_gradient::{MultigridSolver, is_mechanism};
 use super::direct::{factorised, pinned_components};
 use super::product::Product;
 use super::spring::{End, Term};
@@ -119,8 +119,7 @@ impl<const N: usize> Solver<N> {
         match multigrid.solve(tolerance, system, u) {
             Err(Error::Mechanics(_)) if !is_tied => {
                 let solved = factorised(system, u)?;
-                let is_lost = before > 0.0 && solved.work > LOST_STIFFNESS * before;
-                if is_lost { Err(Error::LossOfStiffness) } else { Ok(solved) }
+                if is_mechanism(solved.work, before) { Err(Error::LossOfStiffness) } else { Ok(solved) }
             }
             solved => solved,
         }
