@@ -137,7 +137,7 @@ mod _perilife {
         let document = document(source, name, &set, law, files)?;
         watched(py, None, |_| {
             let task = Task::read(Kind::of(&document.table), &document, &[])?;
-            check_document(&document, &task).map(|checked| (checked.json().to_string(), checked.drawing))
+            check_document(&document, &task).map(|checked| (checked.json().to_string(), checked.drawn.svg().unwrap_or_default()))
         })
     }
 

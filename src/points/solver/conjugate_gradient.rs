@@ -31,9 +31,8 @@ pub struct MultigridSolver<const N: usize> {
     fresh_iterations: Option<usize>,
     /// Iterations beyond these since the hierarchy was built.
     excess: usize,
-    /// Ends of bonds that changed since the hierarchy took them in, and of those among them that are cut.
+    /// Ends of bonds that changed since the hierarchy took them in.
     changed: Vec<usize>,
-    cut: Vec<usize>,
     r: Vec<f64>,
     p: Vec<f64>,
     q: Vec<f64>,
@@ -44,22 +43,20 @@ impl<const N: usize> MultigridSolver<N> {
     pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
         let zeros = || product.layout().zeros();
         let multigrid = Multigrid::new(&Fine { body, bonds, product });
-        let (r, p, q, changed, cut) = (zeros(), zeros(), zeros(), Vec::new(), Vec::new());
-        MultigridSolver { multigrid, fresh_iterations: None, excess: 0, changed, cut, r, p, q }
+        let (r, p, q) = (zeros(), zeros(), zeros());
+        MultigridSolver { multigrid, fresh_iterations: None, excess: 0, changed: Vec::new(), r, p, q }
     }
 
     /// A new hierarchy.
     fn rebuild(&mut self, System { body, bonds, product, .. }: System<'_, N>) {
         self.multigrid = Multigrid::new(&Fine { body, bonds, product });
-        (self.fresh_iterations, self.excess, self.changed, self.cut) = (None, 0, Vec::new(), Vec::new());
+        (self.fresh_iterations, self.excess, self.changed) = (None, 0, Vec::new());
     }
 
     /// Told which bonds changed since the last solve.
-    pub fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
+    pub fn broke(&mut self, body: &Body, broken: &[Bond]) {
         for &bond in broken {
-            let ends = [body.ends(bond).1, body.ends(bond).2].map(|place| body.behind(place).0);
-            self.changed.extend(ends);
-            self.cut.extend(ends.iter().filter(|_| !bonds.is_intact(bond)));
+            self.changed.extend([body.ends(bond).1, body.ends(bond).2].map(|place| body.behind(place).0));
         }
     }
 
@@ -72,13 +69,10 @@ impl<const N: usize> MultigridSolver<N> {
             self.rebuild(system);
         }
         if !self.changed.is_empty() {
-            let [changed, cut] = [&mut self.changed, &mut self.cut].map(std::mem::take).map(|mut places| {
-                places.sort_unstable();
-                places.dedup();
-                places
-            });
-            // Of bonds that only carry more or less the coarse levels need not know.
-            self.multigrid.refresh(&Fine { body, bonds, product }, &changed, &cut);
+            let mut changed = std::mem::take(&mut self.changed);
+            changed.sort_unstable();
+            changed.dedup();
+            self.multigrid.refresh(&Fine { body, bonds, product }, &changed);
         }
         let work_before = dot(product.layout(), f, u);
         let mut spent = self.iterate(tolerance, system, u, work_before)?;

@@ -174,7 +174,7 @@ impl<const N: usize> Sides for ConstrainedSystem<N> {
     }
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
-        self.solver.broke(body, bonds, broken);
+        self.solver.broke(body, broken);
         // A crack may run up to an edge that is moved straight.
         if let Some(grips) = self.grips.as_mut().filter(|grips| !body.boundary.ties.is_empty() && !grips.drag.is_empty()) {
             (grips.drag, grips.constant) = (Vec::new(), f64::NAN);

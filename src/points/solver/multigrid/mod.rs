@@ -112,14 +112,13 @@ impl<const N: usize> Multigrid<N> {
         }
     }
 
-    /// Takes in that bonds of some points have changed: their diagonals, the coarse levels around those whose bonds are `cut`, and the
-    /// coarsest anew.
-    pub fn refresh(&mut self, fine: &Fine<'_, N>, changed: &[usize], cut: &[usize]) {
+    /// Takes in that bonds of some points have changed: their diagonals, the coarse levels around them, and the coarsest anew.
+    pub fn refresh(&mut self, fine: &Fine<'_, N>, changed: &[usize]) {
         let seat = |&place: &usize| <[usize; 2]>::from(fine.body.lattice.column_row(place));
-        for place in changed.iter().map(seat) {
+        let mut changed: Vec<[usize; 2]> = changed.iter().map(seat).collect();
+        for &place in &changed {
             self.smoother.set_block(place, &fine.diagonal(place));
         }
-        let mut changed: Vec<[usize; 2]> = cut.iter().map(seat).collect();
         for index in 0..self.levels.len() {
             let (finer, coarser) = self.levels.split_at_mut(index);
             changed = match finer.last() {

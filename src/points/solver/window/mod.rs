@@ -207,9 +207,9 @@ impl<const N: usize> Solver<N> {
     }
 
     /// Told which bonds changed since the last solve.
-    pub fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
+    pub fn broke(&mut self, body: &Body, broken: &[Bond]) {
         if let Some(multigrid) = &mut self.multigrid {
-            multigrid.broke(body, bonds, broken);
+            multigrid.broke(body, broken);
         }
         self.broken.extend(broken);
     }
