@@ -61,8 +61,10 @@ fn stem(name: &str) -> Option<&str> {
 /// The name that was meant, if one is near: a quarter of its letters may be wrong (put in, left out, changed, or swapped with the next one), three at
 /// most; names of one or two letters are too short.
 pub fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<String> {
-    let most = (name.chars().count() / 4).clamp(1, 3);
-    let long = known.filter(|_| name.chars().count() > 2);
+    let letters = name.chars().count();
+    let most = (letters / 4).clamp(1, 3);
+    // Lengths bound the distance, so that a name of a million letters is not compared letter by letter.
+    let long = known.filter(|other| letters > 2 && other.chars().count().abs_diff(letters) <= most);
     let far = long.map(|other| (strsim::osa_distance(name, other), other)).filter(|(far, _)| *far <= most);
     far.min_by_key(|(far, _)| *far).map(|(_, other)| other.to_owned())
 }
