@@ -9,8 +9,10 @@ pub struct Snapshot {
     pub crack_length: f64,
     pub displacement: Vec<[f64; 2]>,
     /// Damage φ: fraction of its bonds that are broken, 0 to 1.
+    #[serde(with = "crate::sealed::mostly_zero")]
     pub damage: Vec<f64>,
     /// Least remaining life λ of its intact bonds, 0 to 1; empty where no bonds have one.
+    #[serde(with = "crate::sealed::mostly_one")]
     pub remaining_life: Vec<f64>,
     /// Von Mises stress; empty where it is not known.
     pub stress: Vec<f64>,

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::console::{Console, RunProgress};
 use super::signals;
-use perilife_base::error::{Error, Result, input};
+use perilife_base::error::{Error, Result, fail_if, input};
 use perilife_base::input::{Document, Provenance};
 use perilife_base::watch::Watch;
 use perilife_growth::predict::checkpoint::{Checkpoint, SIGN};
@@ -123,9 +123,7 @@ impl Args {
         signals::go_on_by(move || way_on(&file));
         let sign = if matches!(task, Task::Scene(_)) { SCENE_SIGN } else { SIGN };
         let file = OutputFile::claim(path, Sort { option: "--checkpoint", sign }, read)?;
-        if !file.is_file() {
-            return Err(input("--checkpoint", path.display(), "is not a file", "give the name of a file"));
-        }
+        fail_if!(!file.is_file(), input("--checkpoint", path.display(), "is not a file", "give the name of a file"));
         // The parser let no other time through.
         let every = Duration::try_from_secs_f64(self.checkpoint_every).unwrap_or_default();
         let last = Mutex::new(Last { at: Instant::now(), cost: Duration::ZERO, has_failed: false });

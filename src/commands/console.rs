@@ -157,17 +157,8 @@ impl Console {
     }
 }
 
-impl Observer for Console {
-    fn block_done(&self, _: &Progress) -> bool {
-        true
-    }
-}
-
-impl SceneObserver for Console {
-    fn step_done(&self, _: &SceneProgress) -> bool {
-        true
-    }
-}
+impl Observer for Console {}
+impl SceneObserver for Console {}
 
 impl Watcher for Console {
     fn warn(&self, warning: &str) {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use super::console::Console;
 use super::worker;
-use perilife_base::error::Result;
+use perilife_base::error::{Result, fail_if};
 use perilife_service::api::{Limits, Security};
 use perilife_service::{Settings, serve};
 
@@ -66,12 +66,8 @@ pub struct Args {
 fn address(text: &str) -> std::result::Result<SocketAddr, String> {
     let wrong = |why: &str| format!("{why}; give ADDRESS:PORT or NAME:PORT, for example 127.0.0.1:8080 or localhost:8080");
     let Some((host, port)) = text.rsplit_once(':') else { return Err(wrong("it has no port")) };
-    if port.parse::<u16>().is_err() {
-        return Err(wrong("the port is not 0 to 65535"));
-    }
-    if host.is_empty() {
-        return Err(wrong("it has no address; 0.0.0.0 is every one of this machine"));
-    }
+    fail_if!(port.parse::<u16>().is_err(), wrong("the port is not 0 to 65535"));
+    fail_if!(host.is_empty(), wrong("it has no address; 0.0.0.0 is every one of this machine"));
     let found = text.to_socket_addrs().map_err(|error| wrong(&format!("unknown host name ({error})")))?;
     let found: Vec<SocketAddr> = found.collect();
     let chosen = found.iter().find(|one| one.is_ipv4()).or(found.first());

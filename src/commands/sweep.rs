@@ -14,7 +14,7 @@ use super::console::Console;
 use super::signals;
 #[cfg(feature = "service")]
 use super::worker::Place;
-use perilife_base::error::{Error, Result, input};
+use perilife_base::error::{Error, Result, fail_if, input};
 use perilife_base::input::Document;
 use perilife_calibration::sweep::design::CASES_MAX;
 use perilife_calibration::sweep::{DrawnCase, Sweep};
@@ -199,9 +199,7 @@ pub fn submit(args: &Args, folder: &SweepFolder, left: &[&DrawnCase]) -> Result<
     }
     let all = folder.plan.cases.len();
     let per_task = args.slurm.cases_per_task.unwrap_or_else(|| all.div_ceil(TASKS_MAX));
-    if per_task == 0 {
-        return Err(input("--cases-per-task", per_task, "must be at least 1", "give at least 1"));
-    }
+    fail_if!(per_task == 0, input("--cases-per-task", per_task, "must be at least 1", "give at least 1"));
     let count = all.div_ceil(per_task);
     let is_needed = |number: &usize| left.iter().any(|case| Shard { number: *number, of: count }.has(case.number));
     let needed: Vec<usize> = (1..=count).filter(is_needed).collect();
@@ -240,9 +238,7 @@ fn sbatch(args: &Args, script: &Path, count: usize) -> Result<bool> {
     }
     let status = process.wait().map_err(cannot)?;
     let words = words.trim().replace('\n', "; ");
-    if job.is_empty() {
-        return Err(cannot(std::io::Error::other(format!("{status}: {words}"))));
-    }
+    fail_if!(job.is_empty(), cannot(std::io::Error::other(format!("{status}: {words}"))));
     if !status.success() {
         console.warn(&format!("job {job}: a task failed ({status}) {words}; see {LOGS}"));
     }

@@ -16,7 +16,7 @@
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-use perilife_base::error::{Error, Result};
+use perilife_base::error::{Error, Result, fail_if};
 use perilife_laws::{STEADY_EXPONENTS, unsteady};
 use perilife_points::bond_law::Kernel;
 
@@ -34,9 +34,7 @@ const STEP: f64 = 1e-3;
 /// β at an exponent.
 /// Errors: p outside [`STEADY_EXPONENTS`].
 pub fn rate_constant(kernel: Kernel, p: f64) -> Result<f64> {
-    if !STEADY_EXPONENTS.contains(&p) {
-        return Err(unsteady("fatigue.p", p));
-    }
+    fail_if!(!STEADY_EXPONENTS.contains(&p), unsteady("fatigue.p", p));
     Ok(logarithm(kernel, p)?.exp())
 }
 

@@ -186,11 +186,10 @@ fn load(table: &Table, row: &Row, decimal: Decimal, series: &Series) -> Result<O
         (None, Some(smallest), Some(ratio)) if smallest / ratio > 0.0 => smallest / ratio,
         _ => f64::NAN,
     };
-    if largest <= 0.0 {
-        return Err(table
-            .cell_fault(row, column.index)
-            .error("is not above 0", "give the maximum load of the cycle, tension positive"));
-    }
+    fail_if!(
+        largest <= 0.0,
+        table.cell_fault(row, column.index).error("is not above 0", "give the maximum load of the cycle, tension positive")
+    );
     let range_beside = if maximum.is_some() { of(range)? } else { None };
     let r = match (of(minimum)?, of(ratio)?, range_beside) {
         (Some(smallest), ..) if maximum.is_some() => smallest / largest,

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use perilife_base::columns::Table;
-use perilife_base::error::{Error, Result, input};
+use perilife_base::error::{Error, Result, fail_if, input};
 use perilife_base::monotone::Monotone;
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 use perilife_calibration::population::plate::{PlateBand, Quantiles};
@@ -60,9 +60,7 @@ impl Row {
         if let Some(fall) = cycles.windows(2).position(|pair| pair[1] < pair[0]) {
             return Err(table.bad(fall + 3, Some(A_N_COLUMNS[0]), Some(&cycles[fall + 1].to_string()), "falls"));
         }
-        if cycles.is_empty() {
-            return Err(table.bad(1, None, None, "is followed by no row"));
-        }
+        fail_if!(cycles.is_empty(), table.bad(1, None, None, "is followed by no row"));
         let row = |i: usize| Row {
             cycles: cycles[i],
             crack_length_mm: lengths[i],

@@ -164,21 +164,8 @@ pub fn trimmed(text: &str) -> &str {
 
 /// Keys of results that stay as they are: what was given, names, hashes, lists of keys, and constants whose name says SI.
 const KEPT: [&str; 15] = [
-    "case",
-    "constants_si",
-    "commit",
-    "design",
-    "file",
-    "finished",
-    "fatigue",
-    "inputs",
-    "key",
-    "kinds",
-    "laws",
-    "name",
-    "overrides",
-    "sources",
-    "version",
+    "case", "constants_si", "commit", "design", "file", "finished", "fatigue", "inputs", "key", "kinds", "laws", "name",
+    "overrides", "sources", "version",
 ];
 /// Keys whose fields belong to the constants that stand beside them.
 const ERRORS: &str = "standard_errors";

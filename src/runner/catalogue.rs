@@ -82,7 +82,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     all.push((
         "specimen.outline_file".to_owned(),
         "part.dxf".to_owned(),
-        "a plate from a drawing, DXF or SVG: layers outline, holes (full circles), cracks".to_owned(),
+        "a plate from a DXF drawing: layers outline, holes (full circles), cracks".to_owned(),
     ));
     all.push((
         beta::KEY.to_owned(),

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::{Done, Message, Summary};
-use perilife_base::error::{Error, Result, input};
+use perilife_base::error::{Error, Result, fail_if, input};
 use perilife_base::input::{Document, LENGTH};
 use perilife_base::units::shown::{length_given, per, told};
 use perilife_base::units::{MM, MPA, MPA_SQRT_M, round_off};
@@ -199,13 +199,9 @@ pub fn lengths(asked: &str) -> Result<Vec<f64>> {
     for number in [first, last, step] {
         LENGTH.read(KEY, *number)?;
     }
-    if first >= last {
-        return Err(refuse("must increase"));
-    }
+    fail_if!(first >= last, refuse("must increase"));
     let steps = ((last - first) / step - SLACK).ceil();
-    if steps > LENGTHS_MOST {
-        return Err(refuse("has more than 10000 lengths"));
-    }
+    fail_if!(steps > LENGTHS_MOST, refuse("has more than 10000 lengths"));
     let length = |i: usize| if i as f64 >= steps { *last } else { first + i as f64 * step };
     Ok((0..=steps as usize).map(|i| length(i) * MM).collect())
 }

@@ -142,20 +142,18 @@ impl TaskCheckpoint {
     /// Errors: bytes that are no checkpoint, or one of another task.
     pub fn of(task: &Task, bytes: &[u8]) -> Result<TaskCheckpoint> {
         match task {
-            Task::Scene(scene) => SceneCheckpoint::from_bytes(bytes)
-                .and_then(|kept| kept.check(scene).map(|()| TaskCheckpoint::Scene(Box::new(kept)))),
-            _ => Checkpoint::from_bytes(bytes)
-                .and_then(|kept| kept.check(task.case()?).map(|()| TaskCheckpoint::Cycles(Box::new(kept)))),
+            Task::Scene(scene) => SceneCheckpoint::of(scene, bytes).map(|from| TaskCheckpoint::Scene(Box::new(from))),
+            _ => Checkpoint::of(task.case()?, bytes).map(|from| TaskCheckpoint::Cycles(Box::new(from))),
         }
     }
 
     pub fn words(&self) -> String {
         match self {
-            TaskCheckpoint::Cycles(kept) => {
-                let progress = kept.progress();
+            TaskCheckpoint::Cycles(from) => {
+                let progress = from.kept.progress;
                 format!("N = {:.1}, a = {:.3} mm", progress.cycles, progress.crack_length / MM)
             }
-            TaskCheckpoint::Scene(kept) => format!("step {}, {:.1} % done", kept.step(), 100.0 * kept.progress().share),
+            TaskCheckpoint::Scene(from) => format!("step {}, {:.1} % done", from.kept.step(), 100.0 * from.kept.share),
         }
     }
 }

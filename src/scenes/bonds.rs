@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use perilife_base::sealed::{dense, sparse};
 use perilife_points::net::Net;
 
 /// State of every bond of a net.
@@ -16,11 +15,13 @@ pub struct BondState {
     pub may_fail: Vec<bool>,
 }
 
-/// What has changed in the bonds of a net: those that are not as at first.
+/// What has changed in the bonds of a net.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct KeptBonds {
-    share: Vec<(u32, f64)>,
-    peak: Vec<(u32, f64)>,
+    #[serde(with = "perilife_base::sealed::mostly_one")]
+    share: Vec<f64>,
+    #[serde(with = "perilife_base::sealed::mostly_zero")]
+    peak: Vec<f64>,
 }
 
 impl BondState {
@@ -35,16 +36,14 @@ impl BondState {
     }
 
     pub fn kept(&self) -> KeptBonds {
-        KeptBonds { share: sparse(&self.share, 1.0), peak: sparse(&self.peak, 0.0) }
+        KeptBonds { share: self.share.clone(), peak: self.peak.clone() }
     }
 
     /// Puts the bonds where they stood; whether they are those of this net.
-    pub fn restore(&mut self, kept: &KeptBonds) -> bool {
-        let count = self.share.len();
-        let fits = kept.share.iter().chain(&kept.peak).all(|(bond, _)| (*bond as usize) < count);
+    pub fn restore(&mut self, kept: KeptBonds) -> bool {
+        let fits = [&kept.share, &kept.peak].iter().all(|values| values.len() == self.share.len());
         if fits {
-            self.share = dense(&kept.share, 1.0, count);
-            self.peak = dense(&kept.peak, 0.0, count);
+            (self.share, self.peak) = (kept.share, kept.peak);
         }
         fits
     }

@@ -9,77 +9,52 @@ use std::time::Instant;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use super::bonds::{BondState, KeptBonds};
 use super::log::{Log, Records};
 use super::scene::Scene;
 use super::{SceneObserver, SceneProgress};
 use perilife_base::error::{Error, Result};
-use perilife_base::sealed::{Seal, refused};
+use perilife_base::sealed::{Checkpoint, Kept, Seal, hash_of, refused};
 
 /// First bytes of a checkpoint.
 pub const SIGN: &[u8] = b"perilife scene checkpoint\n";
-const SEAL: Seal = Seal { of: "a scene of this program", magic: SIGN, form: 2 };
 
 /// State of a scene after one of its steps.
+pub type SceneCheckpoint = Checkpoint<KeptScene>;
+
+/// All that a scene goes on from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SceneCheckpoint {
-    /// Hash of what the scene says.
-    scene: [u8; 32],
+pub struct KeptScene {
     /// Largest share of the run so far, 0 to 1.
-    share: f64,
-    /// Time spent on the run so far, s.
-    wall_s: f64,
+    pub share: f64,
     records: Records,
     bonds: KeptBonds,
     /// Where its procedure stands, with what its interaction or its solver keeps, as bytes: the scene says which procedure it is.
     place: Vec<u8>,
 }
 
-impl SceneCheckpoint {
-    /// How far the run had come.
-    pub fn progress(&self) -> SceneProgress {
-        SceneProgress { share: self.share }
-    }
-
+impl KeptScene {
     /// The step after which it was taken down, as `history.csv` counts them.
     pub fn step(&self) -> usize {
         self.records.last_step()
     }
+}
 
-    /// Whether it is that of a run of this scene, by all that decides how the run goes; its name and where the file lies do not.
-    pub fn belongs_to(&self, scene: &Scene) -> bool {
-        self.scene == hash(scene)
-    }
+impl Kept for KeptScene {
+    type Input = Scene;
+    const SEAL: Seal = Seal { of: "a scene of this program", magic: SIGN, form: 3 };
+    const OF_ANOTHER: &'static str = "is of another scene, or of this one before a change";
 
-    /// Refuses the checkpoint of another scene.
-    pub fn check(&self, scene: &Scene) -> Result<()> {
-        if self.belongs_to(scene) { Ok(()) } else { Err(refused("is of another scene, or of this one before a change")) }
-    }
-
-    /// As bytes, with a checksum.
-    pub fn to_bytes(&self) -> Vec<u8> {
-        SEAL.to_bytes(self)
-    }
-
-    /// From what [`SceneCheckpoint::to_bytes`] gave.
-    pub fn from_bytes(bytes: &[u8]) -> Result<SceneCheckpoint> {
-        SEAL.read(bytes)
+    fn hash(scene: &Scene) -> [u8; 32] {
+        let Scene { specimen, material, model, drives, holds, damage, procedure, refinement, .. } = scene;
+        hash_of(&(specimen, material, model, drives, holds, damage, procedure, refinement))
     }
 }
 
 /// A checkpoint whose sizes or procedure are not those of the run.
 pub(super) fn of_another() -> Error {
     refused("is of another plate or procedure")
-}
-
-/// Hash of all that decides how the run of a scene goes.
-fn hash(scene: &Scene) -> [u8; 32] {
-    let Scene { specimen, material, model, drives, holds, damage, procedure, refinement, .. } = scene;
-    // Debug output of floats says them to the last bit.
-    let all = format!("{:?}", (specimen, material, model, drives, holds, damage, procedure, refinement));
-    Sha256::digest(all).into()
 }
 
 /// Time spent on a run.
@@ -110,7 +85,7 @@ pub struct Course<'a> {
     /// Largest share of the run so far.
     share: f64,
     /// Where the run goes on, until its procedure stands there.
-    from: Option<SceneCheckpoint>,
+    from: Option<KeptScene>,
 }
 
 impl<'a> Course<'a> {
@@ -122,16 +97,16 @@ impl<'a> Course<'a> {
         clock: Clock,
         from: Option<SceneCheckpoint>,
     ) -> Self {
-        Course { log, observer, clock, scene: hash(scene), share: 0.0, from }
+        Course { log, observer, clock, scene: KeptScene::hash(scene), share: 0.0, from: from.map(|from| from.kept) }
     }
 
     /// Puts log and bonds where the run stood, and tells where its procedure did; `None`, and nothing is touched, at the beginning of
     /// a run.
     /// Errors: a checkpoint of another plate.
     pub fn take_up<T: DeserializeOwned>(&mut self, bonds: &mut BondState) -> Result<Option<T>> {
-        let Some(SceneCheckpoint { share, records, bonds: kept, place, .. }) = self.from.take() else { return Ok(None) };
+        let Some(KeptScene { share, records, bonds: kept, place }) = self.from.take() else { return Ok(None) };
         self.share = share;
-        let fits = self.log.restore(records) && bonds.restore(&kept);
+        let fits = self.log.restore(records) && bonds.restore(kept);
         postcard::from_bytes(&place).ok().filter(|_| fits).map(Some).ok_or_else(of_another)
     }
 
@@ -149,14 +124,11 @@ impl<'a> Course<'a> {
 
     /// Offers what it takes to go on from here, the procedure standing at this place.
     pub fn may_keep<T: Serialize>(&self, bonds: &BondState, place: impl Fn() -> T) {
-        self.observer.may_keep(&|| SceneCheckpoint {
-            scene: self.scene,
-            share: self.share,
-            wall_s: self.clock.seconds(),
-            records: self.log.records(),
-            bonds: bonds.kept(),
+        self.observer.may_keep(&|| {
+            let (share, records, bonds) = (self.share, self.log.records(), bonds.kept());
             // Numbers, lists and options of known length can always be written to memory.
-            place: postcard::to_stdvec(&place()).unwrap_or_default(),
+            let place = postcard::to_stdvec(&place()).unwrap_or_default();
+            Checkpoint::new(self.scene, self.clock.seconds(), KeptScene { share, records, bonds, place })
         });
     }
 }

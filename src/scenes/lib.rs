@@ -56,8 +56,10 @@ pub struct SceneProgress {
 
 /// Receives progress of a scene; returning `false` asks it to stop.
 pub trait SceneObserver: Sync {
-    /// Called after every recorded step.
-    fn step_done(&self, progress: &SceneProgress) -> bool;
+    /// Called after every recorded step; by default the scene goes on.
+    fn step_done(&self, _progress: &SceneProgress) -> bool {
+        true
+    }
 
     /// Called with every row of the history as it is taken down, before [`SceneObserver::step_done`]; by default not looked at.
     fn row(&self, _row: &HistoryRow) {}
@@ -71,11 +73,7 @@ pub trait SceneObserver: Sync {
     fn may_keep(&self, _checkpoint: &dyn Fn() -> SceneCheckpoint) {}
 }
 
-impl SceneObserver for perilife_base::watch::Silent {
-    fn step_done(&self, _progress: &SceneProgress) -> bool {
-        true
-    }
-}
+impl SceneObserver for perilife_base::watch::Silent {}
 
 /// Runs a scene.
 /// Errors: wrong input that shows only now, choices that do not go together, a run that was cancelled.

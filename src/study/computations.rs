@@ -14,7 +14,7 @@ use super::moving::{self, branches, growth_load, shear, tension};
 use super::subject::Watcher;
 use super::uniform_tension::{self, strip};
 use super::values::{Figures, Keys};
-use perilife_base::error::{Error, Result};
+use perilife_base::error::{Error, Result, fail_if};
 use perilife_base::input::Folder;
 use perilife_base::monotone::Monotone;
 use perilife_base::quadrature;
@@ -115,9 +115,7 @@ pub fn fit(text: &str) -> Result<Figures> {
         let text = format!("model = {{ method = '{method}', spacing_mm = 1.0 }}\n{text}");
         let case = Case::from_toml_with_law(&text, "verification", Folder::none(), record(&calibration, &fit))?;
         let run = predict(&case, &Silent)?;
-        if run.stop != StopReason::CrackLengthReached {
-            return Err(Error::Mechanics(format!("{}: stopped by {}", case.name, run.stop)));
-        }
+        fail_if!(run.stop != StopReason::CrackLengthReached, Error::Mechanics(format!("{}: stopped by {}", case.name, run.stop)));
         figures.push((name, run.life_cycles()));
     }
     Ok(figures)
@@ -227,9 +225,7 @@ pub fn elastic(control: (ZeroEnergyControl, f64), spacing: f64, travel: f64) -> 
     let (mut u, held, external) = (vec![0.0; size], vec![false; size], vec![0.0; size]);
     let relaxation = Relaxation { breaking: Breaking::Never, least_load: 1.0, ..Relaxation::default() };
     let rested = relaxation.relax(&mut pressed, &mut bonds, Loads { held: &held, external: &external }, &mut u);
-    if rested.end != RestEnd::AtRest {
-        return Err(Error::Mechanics(format!("the disc did not converge: {rested:?}")));
-    }
+    fail_if!(rested.end != RestEnd::AtRest, Error::Mechanics(format!("the disc did not converge: {rested:?}")));
     let driven = pressed.driven().unwrap_or_default();
     // The law alone shows the forces that the platens balance, and the stresses.
     let (mut law, mut force) = (law()?, vec![0.0; size]);

@@ -31,6 +31,7 @@ pub mod values;
 pub mod verification;
 
 use std::sync::LazyLock;
+use std::time::Instant;
 
 use serde::Deserialize;
 use toml::Table as Toml;
@@ -44,7 +45,7 @@ use stability::SWEEPS;
 use tasks::{chosen, side_by_side};
 use values::combinations;
 
-pub use verification::{KnownMiss, Table, VerificationRow};
+pub use verification::{KnownMiss, VerificationRow};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -67,28 +68,9 @@ macro_rules! files {
 
 /// Files of all topics, in the order in which a life is computed.
 const FILES: [(&str, &str); 22] = files![
-    "tension_plate",
-    "static_scenes",
-    "stress_concentration",
-    "stress_intensity",
-    "named_plates",
-    "pins",
-    "golden",
-    "golden_peridynamics",
-    "life",
-    "poissons_ratio",
-    "spacing",
-    "orientation",
-    "same_plate",
-    "blocks",
-    "biaxial",
-    "paths",
-    "measured",
-    "pbx_disc",
-    "dual_horizon",
-    "scene_strength",
-    "estimates",
-    "hand_over",
+    "tension_plate", "static_scenes", "stress_concentration", "stress_intensity", "named_plates", "pins", "golden",
+    "golden_peridynamics", "life", "poissons_ratio", "spacing", "orientation", "same_plate", "blocks", "biaxial", "paths",
+    "measured", "pbx_disc", "dual_horizon", "scene_strength", "estimates", "hand_over",
 ];
 
 /// All topics from their files; `tests/unit/studies.rs` reads them with their errors.
@@ -112,33 +94,34 @@ pub fn topics(names: &[String]) -> Result<Vec<&'static Topic>> {
 
 impl Topic {
     fn rows(&self) -> Result<Vec<VerificationRow>> {
-        let (mut table, asker) = (Table::new(self.name), Asker::new(&Silent));
+        let (mut rows, mut last, asker) = (Vec::new(), Instant::now(), Asker::new(&Silent));
         for questions in &self.ask {
-            each(questions, &self.set, &mut |question, values| answer(&mut table, &asker, question, values))?;
+            each(questions, &self.set, &mut |question, values| {
+                if let Some(row) = answer(self.name, &asker, question, values)? {
+                    rows.push(VerificationRow { wall_s: last.elapsed().as_secs_f64(), ..row });
+                    last = Instant::now();
+                }
+                Ok(())
+            })?;
         }
-        Ok(table.into_rows())
+        Ok(rows)
     }
 }
 
-fn answer(table: &mut Table, asker: &Asker<'_>, question: &Question, values: &Toml) -> Result<()> {
+/// The row of a question; `None` of one that is not asked with these values.
+fn answer(topic: &'static str, asker: &Asker<'_>, question: &Question, values: &Toml) -> Result<Option<VerificationRow>> {
     let asking = asker.ask(question, values);
     if question.when.as_ref().map_or(Ok(1.0), |when| asking.figure(when))? <= 0.0 {
-        return Ok(());
+        return Ok(None);
     }
     let computed = if question.spread.is_empty() { asking.number(&question.read)? } else { spread(asker, question, values)? };
     let bound = question.bound.as_ref().map_or(Ok(0.0), |bound| asking.figure(bound))?;
-    let (quantity, source) = (asking.text(&question.quantity)?, asking.text(&question.source)?);
-    match &question.truth {
-        Some(truth) => table.compare(quantity, computed, asking.figure(truth)?, bound, &source),
-        None => table.error(quantity, computed, bound, &source),
-    }
-    if let Some(miss) = &question.miss {
-        let known = asking.figure(&miss.known)?;
-        if known != 0.0 {
-            table.known_miss(&asking.text(&miss.reason)?, known);
-        }
-    }
-    Ok(())
+    let words = (asking.text(&question.quantity)?, asking.text(&question.source)?);
+    let truth = question.truth.as_ref().map(|truth| asking.figure(truth)).transpose()?;
+    let row = VerificationRow::new(topic, words, computed, truth, bound);
+    let Some(miss) = &question.miss else { return Ok(Some(row)) };
+    let known = asking.figure(&miss.known)?;
+    Ok(Some(if known != 0.0 { row.with_miss(asking.text(&miss.reason)?, known) } else { row }))
 }
 
 /// Largest less least value of a reading over its axes.

@@ -8,7 +8,7 @@ use super::dual_horizon::BALANCED;
 use super::subject::Watcher;
 use super::uniform_tension::{rest_within_rim, steel, strip, without_rigid_motion};
 use super::values::Figures;
-use perilife_base::error::{Error, Result};
+use perilife_base::error::{Error, Result, fail_if};
 use perilife_base::units::MM;
 use perilife_growth::predict::Silent;
 use perilife_plate::specimen::Point;
@@ -39,9 +39,7 @@ pub fn energy_lost(text: &str, share: f64, observer: &dyn Watcher) -> Result<Fig
         *time_step = Some(share * stable);
     }
     let done = perilife_scenes::run(&scene, observer)?;
-    if done.end != SceneEnd::Done {
-        return Err(Error::Mechanics(format!("the motion ended early: {}", done.end)));
-    }
+    fail_if!(done.end != SceneEnd::Done, Error::Mechanics(format!("the motion ended early: {}", done.end)));
     let largest = done.history.iter().map(|row| row.work.abs()).fold(0.0, f64::max);
     let lost = done.history.iter().map(|row| (row.kinetic + row.strain + row.fracture - row.work).abs());
     Ok(vec![("lost", 100.0 * lost.fold(0.0, f64::max) / largest)])

@@ -8,7 +8,7 @@ use std::str::FromStr;
 
 use toml::{Table, Value};
 
-use perilife_base::error::{Error, Result};
+use perilife_base::error::{Error, Result, fail_if};
 use perilife_growth::cracks::steering::kink_angle;
 use perilife_plate::loading::formula::Formula;
 
@@ -85,9 +85,7 @@ pub fn combinations(axes: &[Table]) -> Result<Vec<Table>> {
     axes.iter().try_fold(vec![Table::new()], |before, axis| {
         let lengths: Vec<usize> = axis.values().filter_map(|column| Some(column.as_array()?.len())).collect();
         let count = lengths.iter().copied().max().unwrap_or(1);
-        if lengths.iter().any(|length| *length != count) {
-            return Err(wrong(&axis.to_string(), "has columns of different lengths"));
-        }
+        fail_if!(lengths.iter().any(|length| *length != count), wrong(&axis.to_string(), "has columns of different lengths"));
         let place = |at: usize| axis.iter().map(move |(name, column)| (name.clone(), column.get(at).unwrap_or(column).clone()));
         let longer =
             |table: &Table| (0..count).map(|at| table.clone().into_iter().chain(place(at)).collect()).collect::<Vec<Table>>();

@@ -1,7 +1,6 @@
 //! Rows of a verification, the judgement over them, as text, CSV, JSON and as tables for documents.
 
 use std::cmp::Ordering;
-use std::time::Instant;
 
 use serde_json::{Value, json};
 
@@ -182,6 +181,25 @@ pub struct KnownMiss {
 }
 
 impl VerificationRow {
+    /// A figure against its reference (not 0); without one the figure is itself an error in percent.
+    pub fn new(
+        name: &'static str,
+        (quantity, source): (String, String),
+        computed: f64,
+        reference: Option<f64>,
+        bound_percent: f64,
+    ) -> Self {
+        let error_percent = reference.map_or(computed, |reference| percent(computed, reference));
+        let (reference, known_miss, wall_s) = (reference.unwrap_or(0.0), None, 0.0);
+        VerificationRow { name, quantity, computed, reference, error_percent, bound_percent, known_miss, source, wall_s }
+    }
+
+    /// With the reason of a miss and the error that is known, percent; a row that keeps its bound has none.
+    pub fn with_miss(self, reason: String, known_percent: f64) -> Self {
+        let known_miss = (!self.ok()).then(|| KnownMiss { reason, bound_percent: 1.1 * known_percent.abs() });
+        VerificationRow { known_miss, ..self }
+    }
+
     /// Whether the error keeps its bound; an error that is not a number does not.
     pub fn ok(&self) -> bool {
         self.error_percent.abs() <= self.bound_percent
@@ -190,55 +208,5 @@ impl VerificationRow {
     /// Whether the row fails the verification: bound missed for no known reason, or by more than is known.
     pub fn fails(&self) -> bool {
         !self.ok() && !self.known_miss.as_ref().is_some_and(|miss| self.error_percent.abs() <= miss.bound_percent)
-    }
-}
-
-#[derive(Debug)]
-pub struct Table {
-    name: &'static str,
-    rows: Vec<VerificationRow>,
-    last: Instant,
-}
-
-impl Table {
-    pub fn new(name: &'static str) -> Self {
-        Table { name, rows: Vec::new(), last: Instant::now() }
-    }
-
-    /// A figure against its reference (not 0); the bound is on `100 |computed / reference - 1|`.
-    pub fn compare(&mut self, quantity: impl Into<String>, computed: f64, reference: f64, bound_percent: f64, source: &str) {
-        self.push(quantity.into(), computed, reference, percent(computed, reference), bound_percent, source);
-    }
-
-    pub fn error(&mut self, quantity: impl Into<String>, error_percent: f64, bound_percent: f64, source: &str) {
-        self.push(quantity.into(), error_percent, 0.0, error_percent, bound_percent, source);
-    }
-
-    /// Gives the last row the reason of a miss and the error that is known, percent; a row that keeps its bound has none.
-    pub fn known_miss(&mut self, reason: &str, known_percent: f64) {
-        if let Some(row) = self.rows.last_mut().filter(|row| !row.ok()) {
-            row.known_miss = Some(KnownMiss { reason: reason.to_owned(), bound_percent: 1.1 * known_percent.abs() });
-        }
-    }
-
-    pub fn into_rows(self) -> Vec<VerificationRow> {
-        self.rows
-    }
-
-    fn push(&mut self, quantity: String, computed: f64, reference: f64, error_percent: f64, bound_percent: f64, source: &str) {
-        let wall_s = self.last.elapsed().as_secs_f64();
-        self.last = Instant::now();
-        let row = VerificationRow {
-            name: self.name,
-            quantity,
-            computed,
-            reference,
-            error_percent,
-            bound_percent,
-            known_miss: None,
-            source: source.to_owned(),
-            wall_s,
-        };
-        self.rows.push(row);
     }
 }

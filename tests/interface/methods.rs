@@ -348,13 +348,8 @@ fn the_engine_writes_plastic_zone_and_residual_strength_too() {
     let call = [
         &call[..],
         &[
-            "--set",
-            "fatigue.driver=bond_strain",
-            "--set",
-            "material.yield_strength_mpa=300",
-            "--set",
-            "material.toughness_mpa_sqrt_m=30",
-            "-v",
+            "--set", "fatigue.driver=bond_strain", "--set", "material.yield_strength_mpa=300", "--set",
+            "material.toughness_mpa_sqrt_m=30", "-v",
         ],
     ]
     .concat();

@@ -16,14 +16,7 @@ fn a_result_says_what_made_it() {
     let dir = written(&examples());
     let here = dir.path();
     let call = [
-        "predict",
-        "named_files.toml",
-        "--out",
-        "run",
-        "-q",
-        "--set",
-        "loading.stress_ratio=0.25",
-        "--set",
+        "predict", "named_files.toml", "--out", "run", "-q", "--set", "loading.stress_ratio=0.25", "--set",
         "stop.crack_length_mm=40",
     ];
     done(here, &call);

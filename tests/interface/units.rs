@@ -222,15 +222,7 @@ fn other_commands_print_in_the_units_asked_for() {
             run(
                 here,
                 &[
-                    "sif",
-                    &panel,
-                    "--method",
-                    "ring",
-                    "--units",
-                    units,
-                    "--set",
-                    "model.method=\"peridynamics\"",
-                    "--set",
+                    "sif", &panel, "--method", "ring", "--units", units, "--set", "model.method=\"peridynamics\"", "--set",
                     "specimen.crack_length_mm=30",
                 ],
             ),

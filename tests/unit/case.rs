@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use perilife_base::error::Error;
 use perilife_base::input::Folder;
+use perilife_base::sealed::Kept;
 use perilife_growth::case::record::FittedRecord;
 use perilife_growth::case::{Case, LawSource};
-use perilife_growth::predict::checkpoint::hash;
+use perilife_growth::predict::checkpoint::KeptRun;
 use perilife_plate::material::library;
 use perilife_points::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 
@@ -225,7 +226,7 @@ fn every_shipped_case_is_right() {
             let run = tempfile::tempdir().unwrap();
             perilife_results::run::write_input(run.path(), &case).unwrap();
             let again = Case::from_file(&run.path().join("case.toml"), &[]).unwrap_or_else(|error| panic!("{error}"));
-            assert_eq!(hash(&again), hash(&case), "{}", path.display());
+            assert_eq!(KeptRun::hash(&again), KeptRun::hash(&case), "{}", path.display());
             count += 1;
         }
     }

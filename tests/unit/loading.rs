@@ -24,11 +24,7 @@ fn case(specimen: &str, loading: &str) -> Result<Case, perilife_base::error::Err
 fn every_way_to_say_the_same_load() {
     // 50 MPa on 100 x 2 mm² = 10 kN; range = maximum (1 - R).
     let ways = [
-        "stress_max_mpa = 50",
-        "stress_range_mpa = 40",
-        "force_max_n = 10000",
-        "force_range_n = 8000",
-        "force_max_kn = 10",
+        "stress_max_mpa = 50", "stress_range_mpa = 40", "force_max_n = 10000", "force_range_n = 8000", "force_max_kn = 10",
         "force_range_kn = 8",
     ];
     for way in ways {

@@ -205,14 +205,8 @@ fn everything_of_the_specimen_is_drawn() {
     assert_says(
         &svg,
         &[
-            "100 mm",
-            "200 mm",
-            "thickness 2 mm",
-            "stress 7 to 70 MPa, R = 0.1",
-            "fixed x, y",
-            "diameter 10 mm",
-            "slot with tip 2",
-            "tips 0 and 1: 11.18 mm",
+            "100 mm", "200 mm", "thickness 2 mm", "stress 7 to 70 MPa, R = 0.1", "fixed x, y", "diameter 10 mm",
+            "slot with tip 2", "tips 0 and 1: 11.18 mm",
         ],
     );
     assert!(!svg.contains("NaN"));

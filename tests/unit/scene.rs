@@ -262,11 +262,8 @@ fn softening_follows_from_the_strengths() {
     let set = [
         &strengths[1..],
         &[
-            "damage.law=nonlinear_two_parameter",
-            "damage.elastic_stretch=0.001",
-            "damage.peak_stretch=0.002",
-            "damage.final_ratio=2",
-            "damage.printed_law=true",
+            "damage.law=nonlinear_two_parameter", "damage.elastic_stretch=0.001", "damage.peak_stretch=0.002",
+            "damage.final_ratio=2", "damage.printed_law=true",
         ],
     ]
     .concat();

@@ -298,10 +298,7 @@ fn a_formula_of_residual_stress_has_the_units_of_its_key() {
         assert_says(
             &said,
             &[
-                "us_residual.toml:15",
-                "loading.residual_stress = ",
-                "specimen.width_in",
-                "residual_stress_ksi",
+                "us_residual.toml:15", "loading.residual_stress = ", "specimen.width_in", "residual_stress_ksi",
                 "residual_stress_mpa",
             ],
         );

@@ -129,7 +129,7 @@ fn a_run_taken_up_hands_its_crack_over_alike() {
     let whole = predict(&case, &keeping).unwrap();
     let handed_over = whole.curve.iter().find(|row| row.tips.iter().all(|tip| tip.factors.is_some())).unwrap().cycles;
     let kept: Vec<Checkpoint> = keeping.kept().iter().map(|(bytes, _)| read(bytes)).collect();
-    let early = kept.iter().filter(|checkpoint| checkpoint.progress().cycles < handed_over).count();
+    let early = kept.iter().filter(|checkpoint| checkpoint.kept.progress.cycles < handed_over).count();
     println!("{early} of {} checkpoints before the hand-over at {handed_over:.0} cycles", kept.len());
     assert!(early > 0 && early < kept.len(), "{early} of {}", kept.len());
     for at in BTreeSet::from([early / 2, early - 1, early, kept.len() - 1]) {
@@ -205,12 +205,8 @@ fn damaged_and_foreign_checkpoints_are_refused() {
 
     // Whatever says something else about the run makes it another case; the name of a case does not.
     let others = [
-        "loading.stress_max_mpa=71",
-        "fatigue.a=6451",
-        "model.solver=multigrid",
-        "stop.crack_length_mm=41",
-        "specimen.width_mm=62",
-        "material.poisson_ratio=0.31",
+        "loading.stress_max_mpa=71", "fatigue.a=6451", "model.solver=multigrid", "stop.crack_length_mm=41",
+        "specimen.width_mm=62", "material.poisson_ratio=0.31",
     ];
     for other in others {
         let other_case = case(&[other]);

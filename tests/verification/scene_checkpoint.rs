@@ -75,7 +75,7 @@ fn a_scene_taken_up_is_the_undisturbed_one() {
         // Also where bonds break in the very next row: what was looked back at shows only there.
         let rows = &whole.history;
         let breaks_next = |at: &usize| {
-            let row = rows.iter().position(|row| row.step == read(&kept[*at]).step()).unwrap();
+            let row = rows.iter().position(|row| row.step == read(&kept[*at]).kept.step()).unwrap();
             rows.get(row + 1).is_some_and(|next| next.broken_bonds > rows[row].broken_bonds)
         };
         let breaking = (kept.len() / 4..kept.len()).find(breaks_next);
@@ -112,16 +112,9 @@ fn damaged_and_foreign_checkpoints_of_scenes_are_refused() {
         }
     }
     let others = [
-        "specimen.width_mm=22",
-        "material.fracture_energy_j_m2=205",
-        "model.spacing_mm=0.9",
-        "model.solver=secant",
-        "loading.displacement_mm=0.0061",
-        "loading.steps=21",
-        "loading.iterations_per_step=2",
-        "loading.edges=[\"top\"]",
-        "damage.law=critical_energy",
-        "supports.left={fix=[\"x\"]}",
+        "specimen.width_mm=22", "material.fracture_energy_j_m2=205", "model.spacing_mm=0.9", "model.solver=secant",
+        "loading.displacement_mm=0.0061", "loading.steps=21", "loading.iterations_per_step=2", "loading.edges=[\"top\"]",
+        "damage.law=critical_energy", "supports.left={fix=[\"x\"]}",
     ];
     for other in others {
         let other_scene = scene(setting, &[other]);

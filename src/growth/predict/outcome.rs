@@ -1,5 +1,7 @@
 //! What a run gives and how it reports while it goes on.
 
+use serde::{Deserialize, Serialize};
+
 use super::chain::Chain;
 use super::initiation::PhaseOne;
 use crate::cracks::steering::equivalent_factor;
@@ -193,7 +195,7 @@ impl<'a> GoverningCrack<'a> {
 }
 
 /// What a run reports while it goes on.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
     /// Cycles since N = 0.
     pub cycles: f64,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::chain::Chain;
-use super::checkpoint::{self, Checkpoint};
+use super::checkpoint::{Checkpoint, KeptRun};
 use super::retarded::{self, Recounted};
 use super::snapshot::Snapshots;
 use super::way::Way;
@@ -12,8 +12,9 @@ use super::{CrossCheck, CurvePoint, GoverningCrack, Prediction, Progress, RunFig
 use super::{laws, pin_arcs, plastic_zone, tip_factors};
 use crate::case::{Case, Engine};
 use crate::{CrackGrowth, plate};
-use perilife_base::error::{Error, Result};
+use perilife_base::error::{Error, Result, fail_if};
 use perilife_base::raster::{PointGrid, Snapshot};
+use perilife_base::sealed::Kept;
 use perilife_base::units::{MPA, MPA_SQRT_M};
 use perilife_base::watch::{Silent, Watch};
 
@@ -28,8 +29,10 @@ pub const BLOCKS_WITHOUT_GROWTH: usize = 4096;
 
 /// Receives progress; the engine itself never prints. Returning `false` asks the run to stop.
 pub trait Observer: Sync {
-    /// Called after every cycle block.
-    fn block_done(&self, progress: &Progress) -> bool;
+    /// Called after every cycle block; by default the run goes on.
+    fn block_done(&self, _progress: &Progress) -> bool {
+        true
+    }
     /// Whether the run may end after this block with the curve so far.
     fn is_enough(&self) -> bool {
         false
@@ -51,11 +54,7 @@ pub trait Observer: Sync {
     fn looked(&self, _snapshot: &Snapshot, _grid: &PointGrid) {}
 }
 
-impl Observer for Silent {
-    fn block_done(&self, _progress: &Progress) -> bool {
-        true
-    }
-}
+impl Observer for Silent {}
 
 /// A run at its start.
 pub struct Record<'a> {
@@ -69,7 +68,7 @@ pub struct Record<'a> {
 impl<'a> Record<'a> {
     /// The record of a run of a case.
     pub fn new(case: &Case, observer: &'a dyn Observer) -> Self {
-        let hash = checkpoint::hash(case);
+        let hash = KeptRun::hash(case);
         let mut case = case.clone();
         if let Some(points) = case.model.points_mut() {
             points.spacing = points.fitting_spacing(&case.specimen);
@@ -92,7 +91,7 @@ impl<'a> Record<'a> {
         let (case, chain) = (&case, &mut chain);
         let mut way = Way::default();
         let (mut snapshots, earlier_s) = match from {
-            Some(checkpoint) => checkpoint.restore(chain)?,
+            Some(Checkpoint { wall_s, kept, .. }) => (kept.restore(chain)?, wall_s),
             None => {
                 chain.open()?;
                 observer.begun(&way.progress(case, chain), &chain.now().tips);
@@ -109,7 +108,7 @@ impl<'a> Record<'a> {
             if chain.stage.should_rebuild_solver() {
                 let elapsed_s = earlier_s + started.elapsed().as_secs_f64();
                 let progress = way.progress(case, chain);
-                observer.may_keep(&|| Checkpoint::new(hash, chain.state(), &snapshots, &progress, elapsed_s));
+                observer.may_keep(&|| Checkpoint::new(hash, elapsed_s, KeptRun::of(chain, &snapshots, &progress)));
                 if chain.stage.rebuild_solver().is_err() {
                     break StopReason::NoConvergence;
                 }
@@ -122,9 +121,7 @@ impl<'a> Record<'a> {
             if let Some(reason) = reason.or_else(|| observer.is_enough().then_some(StopReason::Stopped)) {
                 break reason;
             }
-            if !goes_on {
-                return Err(Error::Mechanics(format!("{}: the run was canceled", case.name)));
-            }
+            fail_if!(!goes_on, Error::Mechanics(format!("{}: the run was canceled", case.name)));
         };
         let stop =
             chain.stage.close(stop).or_else(|error| end_of_mechanics(error, &mut failure).map(|end| end.unwrap_or(stop)))?;

@@ -13,7 +13,7 @@ use super::laws::growth_law;
 use super::{CurvePoint, Prediction, StopReason};
 use crate::case::Case;
 use crate::end_of_life::{demands, strength_reason};
-use perilife_base::error::{Error, Result, input, input_missing};
+use perilife_base::error::{Error, Result, fail_if, input, input_missing};
 use perilife_laws::growth_law::GrowthLaw;
 use perilife_laws::response::Response;
 use perilife_plate::specimen::LengthConvention;
@@ -119,13 +119,9 @@ impl Recorded {
             let problem = "shifts K whatever the load: no other life follows from the K(a) of this run";
             return Err(input(residual.key(), residual.words(), problem, "run each case by itself"));
         }
-        if prediction.phase_one.is_some() {
-            return Err(none("phase I is of no K"));
-        }
+        fail_if!(prediction.phase_one.is_some(), none("phase I is of no K"));
         let places = places(case, prediction).ok_or_else(|| none("no K is known"))?;
-        if places.len() < 2 {
-            return Err(none("no crack grew"));
-        }
+        fail_if!(places.len() < 2, none("no crack grew"));
         let law = growth_law(case)?;
         let earlier = before(case, &places);
         let first = earlier.len() - 1;

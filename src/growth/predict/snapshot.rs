@@ -1,5 +1,7 @@
 //! Pictures of the damaged plate along a run.
 
+use serde::{Deserialize, Serialize};
+
 use super::chain::Chain;
 use crate::Fields;
 use crate::record::CurvePoint;
@@ -9,13 +11,13 @@ use perilife_base::raster::{PointGrid, Snapshot};
 const BETWEEN: f64 = 20.0;
 
 /// Collects snapshots at even steps of growth.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Snapshots {
     pub taken: Vec<Snapshot>,
     /// Growth between two, m.
-    pub(super) step: f64,
+    step: f64,
     /// Growth at which the next is due, m.
-    pub(super) next: f64,
+    next: f64,
 }
 
 impl Snapshots {

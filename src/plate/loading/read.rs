@@ -20,17 +20,8 @@ const SEQUENCES: &[&str] = &["sequence", "sequences", "blocks", "spectrum", "his
 
 /// Keys that do not say whether they mean maximum or range.
 const BARE: &[&str] = &[
-    "stress",
-    "stress_mpa",
-    "stress_amplitude_mpa",
-    "stress_mean_mpa",
-    "stress_min_mpa",
-    "force",
-    "force_n",
-    "force_kn",
-    "load",
-    "load_n",
-    "load_kn",
+    "stress", "stress_mpa", "stress_amplitude_mpa", "stress_mean_mpa", "stress_min_mpa", "force", "force_n", "force_kn", "load",
+    "load_n", "load_kn",
 ];
 
 const MAGNITUDES: &str = "stress_max_mpa, stress_range_mpa, force_max_n, force_range_n, force_max_kn, force_range_kn";

@@ -10,23 +10,12 @@ use perilife_base::keys::{self, Field, Given, Key, Kinds, Section};
 
 /// Other names of flaws that do not go through the thickness, never treated as through cracks.
 pub const PART_THROUGH: &[&str] = &[
-    "part_through",
-    "part_through_crack",
-    "elliptical_crack",
-    "semi_elliptical_crack",
-    "quarter_elliptical_crack",
-    "thumbnail_crack",
-    "surface_crack_at_hole",
+    "part_through", "part_through_crack", "elliptical_crack", "semi_elliptical_crack", "quarter_elliptical_crack",
+    "thumbnail_crack", "surface_crack_at_hole",
 ];
 
 const PART_THROUGH_KEYS: &[&str] = &[
-    "crack_depth_mm",
-    "crack_half_length_mm",
-    "depth_mm",
-    "surface_length_mm",
-    "crack_shape",
-    "aspect_ratio",
-    "a_over_c",
+    "crack_depth_mm", "crack_half_length_mm", "depth_mm", "surface_length_mm", "crack_shape", "aspect_ratio", "a_over_c",
     "corner_radius_mm",
 ];
 

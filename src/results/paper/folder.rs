@@ -12,7 +12,7 @@ use crate::pictures::fit::{BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, RATES_FI
 use crate::pictures::plate::Plate;
 use crate::record::{RESULT_FILE, RunRecord};
 use perilife_base::columns::{AGAIN, Table};
-use perilife_base::error::{Error, InputError, Result, input};
+use perilife_base::error::{Error, InputError, Result, fail_if, input};
 use perilife_base::input::{Opened, sha256};
 use perilife_base::units::us::System;
 use perilife_calibration::record::{LivesRecord, RatesRecord};
@@ -105,9 +105,7 @@ impl Files<'_> {
     /// A table of the folder, as it was written by what the result beside it says.
     fn table(&self, name: &str, result: &Value, by: &str) -> Result<Table> {
         let path = self.folder.join(name);
-        if !path.is_file() {
-            return Err(self.damaged(name, format!("is missing; {by} lists it")));
-        }
+        fail_if!(!path.is_file(), self.damaged(name, format!("is missing; {by} lists it")));
         let bytes = self.opened.read(&path, name)?;
         if let Some(entry) = listed(result, name) {
             check_listed(&path, &bytes, entry, by)?;

@@ -1,7 +1,7 @@
 //! Points of several levels: places of nested lattices, every level with half the spacing of the one before.
 
 use super::regions::Area;
-use perilife_base::error::{Result, input};
+use perilife_base::error::{Result, fail_if, input};
 use perilife_plate::specimen::{Point, Specimen};
 use perilife_points::body::lattice::{Lattice, ON_RIM};
 
@@ -77,9 +77,7 @@ impl Levels {
         }
         for area in areas {
             let asked = levels.leaves.iter().any(|&leaf| leaf.level >= area.levels && area.holds(levels.position(leaf)));
-            if !asked {
-                return Err(area.refusal("contains no point of the plate", "move it onto the plate, or make it wider"));
-            }
+            fail_if!(!asked, area.refusal("contains no point of the plate", "move it onto the plate, or make it wider"));
         }
         Ok(levels)
     }

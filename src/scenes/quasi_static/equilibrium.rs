@@ -15,7 +15,7 @@ use super::super::failure::Failure;
 use super::super::interaction::{Damaging, Interaction};
 use super::super::springs::Springs;
 use super::stiffness::Stiffness;
-use perilife_base::error::{Error, Result, input};
+use perilife_base::error::{Error, Result, fail_if, input};
 use perilife_plate::specimen::Crack;
 use perilife_points::net::Net;
 use perilife_points::net::rigid::minimal_constraints;
@@ -206,9 +206,7 @@ impl<'n> Equilibrium<'n> {
                 *shape = before;
                 // What the load drives against another piece is held by contact alone. Where that does not hold either without columns
                 // that pull, the shape found with them is none: they glue the pieces together.
-                if has_pressed_all || !self.contact.press_all(bonds) {
-                    return Err(error);
-                }
+                fail_if!(has_pressed_all || !self.contact.press_all(bonds), error);
                 (has_pressed_all, self.is_stale) = (true, true);
             } else if !self.contact.settle(bonds, &shape.u) {
                 break;
@@ -234,11 +232,10 @@ impl<'n> Equilibrium<'n> {
                 self.is_stale = iterations > RENEW && !is_fresh;
                 return Ok(());
             }
-            if is_fresh {
-                return Err(Error::Mechanics(format!(
-                    "no equilibrium within {ITERATIONS_MAX} iterations: the loaded part has no support"
-                )));
-            }
+            fail_if!(
+                is_fresh,
+                Error::Mechanics(format!("no equilibrium within {ITERATIONS_MAX} iterations: the loaded part has no support"))
+            );
             self.is_stale = true;
         }
     }

@@ -4,7 +4,7 @@ use toml::Value;
 
 use super::region::{self, BoxKeys};
 use crate::scene::{Action, LoadRamp, Region, SceneLoad};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::Quantity;
 use perilife_base::keys::{Given, coordinate, key, section};
 use perilife_base::units::{MM, MPA};
@@ -177,9 +177,7 @@ fn regions(all: &Given<'_>, load: &LoadKeys, path: &str, specimen: &Specimen) ->
         }
         (Some(_), Some(_)) => Err(input_missing(&regions_key, "conflicts with edges", "give each as a separate part")),
         (Some(edges), None) => {
-            if edges.is_empty() {
-                return Err(input(&edges_key, "[]", "is empty: no side is loaded", "name the loaded sides"));
-            }
+            fail_if!(edges.is_empty(), input(&edges_key, "[]", "is empty: no side is loaded", "name the loaded sides"));
             if let Some((i, edge)) = edges.iter().enumerate().find(|(i, edge)| edges[..*i].contains(edge)) {
                 return Err(input(&format!("{edges_key}[{i}]"), edge, "is repeated", "name each side once"));
             }

@@ -5,7 +5,7 @@ use toml::Value;
 use super::checks::box_of;
 use super::region::{self, BoxKeys, overlap};
 use crate::scene::Scene;
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::Quantity;
 use perilife_base::keys::{Given, key, number, section};
 use perilife_base::units::MM;
@@ -71,9 +71,7 @@ fn field(all: &Given<'_>, given: &MicroCrackKeys, scene: &Scene) -> Result<Field
     if let Some((key, other, values)) = pairs.into_iter().find(|(.., values)| values[0] > values[1]) {
         return Err(all.refuse(key, format!("is above {other}, {}", values[1]), "use a smaller one"));
     }
-    if lengths[1] == 0.0 {
-        return Err(input("micro_cracks.length_max_mm", 0.0, "gives cracks of zero length", "give more than zero"));
-    }
+    fail_if!(lengths[1] == 0.0, input("micro_cracks.length_max_mm", 0.0, "gives cracks of zero length", "give more than zero"));
     let boxes = match &given.regions {
         None => {
             let [low, high] = bounding_box(&scene.specimen.outline);

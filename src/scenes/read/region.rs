@@ -4,7 +4,7 @@
 use toml::Value;
 
 use crate::scene::{Region, SceneSupport};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::{shorten, table_of};
 use perilife_base::keys::{coordinate, key, part, section};
 use perilife_base::units::{MM, round_mm};
@@ -40,9 +40,7 @@ pub fn edge(edge: Edge, key: &str, depth: (&str, f64), range: (&str, Option<[f64
         None => [f64::NEG_INFINITY, f64::INFINITY],
         Some([from, to]) => {
             let shown = format!("[{}, {}]", round_mm(from), round_mm(to));
-            if from >= to {
-                return Err(input(range.0, shown, "must increase", "give [from, to] along the side"));
-            }
+            fail_if!(from >= to, input(range.0, shown, "must increase", "give [from, to] along the side"));
             if to <= low[1 - across] || from >= high[1 - across] {
                 let name = if across == 1 { "x" } else { "y" };
                 let remedy = format!("give coordinates {name} between {} and {} mm", low[1 - across] / MM, high[1 - across] / MM);

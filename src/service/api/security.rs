@@ -48,13 +48,7 @@ pub async fn guard(
 
 /// What proxies add to a request.
 const OF_PROXIES: [&str; 8] = [
-    "forwarded",
-    "via",
-    "x-forwarded-for",
-    "x-forwarded-host",
-    "x-forwarded-port",
-    "x-forwarded-proto",
-    "x-forwarded-server",
+    "forwarded", "via", "x-forwarded-for", "x-forwarded-host", "x-forwarded-port", "x-forwarded-proto", "x-forwarded-server",
     "x-real-ip",
 ];
 

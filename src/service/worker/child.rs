@@ -106,7 +106,7 @@ fn ended(order: &Run, room: &mut Room, tell: &(dyn Fn(&News) -> bool + Sync), is
     });
     let shown = order.shown.as_ref().map(|pieces| {
         let until = match &from {
-            Some(TaskCheckpoint::Cycles(checkpoint)) => Some(checkpoint.progress().cycles),
+            Some(TaskCheckpoint::Cycles(checkpoint)) => Some(checkpoint.kept.progress.cycles),
             _ => None,
         };
         let shown = shown_until(pieces, until);

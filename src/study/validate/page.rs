@@ -15,18 +15,8 @@ use perilife_results::chart::{COLOURS, Frame, INK, LARGE, Mark, NOTE, Size};
 const UNTESTED: &str = include_str!("../../../data/validation/untested.md");
 
 const HEADS: [&str; 12] = [
-    "set",
-    "test",
-    "measured",
-    "predicted",
-    "ratio",
-    "band",
-    "in the band",
-    "CRPS, %",
-    "path: mean, largest distance, mm",
-    "error stated, %",
-    "model",
-    "others",
+    "set", "test", "measured", "predicted", "ratio", "band", "in the band", "CRPS, %", "path: mean, largest distance, mm",
+    "error stated, %", "model", "others",
 ];
 
 /// Tests of a kind that have a life, of several predictions those of one variant.

@@ -158,12 +158,7 @@ fn the_service_describes_itself() {
     assert_eq!((&kinds["laws"], &kinds["retardations"]), (&listed["laws"], &listed["retardations"]));
     // All but what the service does not run.
     let of_studies = [
-        "verify NAME",
-        "validate NAME",
-        "test.kind",
-        "chart SCENE",
-        "method of the chart",
-        "status of the chart",
+        "verify NAME", "validate NAME", "test.kind", "chart SCENE", "method of the chart", "status of the chart",
         "stability NAME",
     ];
     let is_its_own = |line: &&Value| of_studies.iter().all(|study| line["key"] != *study);

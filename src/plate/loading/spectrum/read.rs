@@ -151,15 +151,10 @@ fn cycles_of(content: Content, notes: &mut Vec<String>) -> Result<Vec<Cycle>> {
     for RawCycle { line, max, min, count } in raw {
         let remedy = "give the maximum first; for peaks and valleys in time order set spectrum_format = \"turning_points\"";
         fail_if!(min > max, fault(Some(line), "min", &min.to_string(), &format!("is above the maximum {max}"), remedy));
-        if !(0.0..=1e15).contains(&count) {
-            return Err(fault(
-                Some(line),
-                "cycles",
-                &count.to_string(),
-                "is not a number of cycles",
-                "give a number of 0 or more",
-            ));
-        }
+        fail_if!(
+            !(0.0..=1e15).contains(&count),
+            fault(Some(line), "cycles", &count.to_string(), "is not a number of cycles", "give a number of 0 or more",)
+        );
         if min == max || count == 0.0 {
             passed_over.push(line);
         } else {
