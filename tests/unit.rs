@@ -36,6 +36,7 @@ mod sweep;
 #[cfg(feature = "tables")]
 mod tables;
 mod units;
+pub mod warnings;
 mod watch;
 mod words;
 mod numerics;

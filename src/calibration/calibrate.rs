@@ -190,7 +190,7 @@ fn fit_along_path(calibration: &CalibrationCase, observer: &dyn Observer) -> Res
         };
         (fit.paris.delta_k_min, fit.paris.delta_k_max) = (reached(f64::min, f64::INFINITY), reached(f64::max, 0.0));
         if has_other_path {
-            fit.warnings.push(format!("crack paths computed with m = {m:.3}; fitted m = {fitted:.3}"));
+            fit.warnings.push(format!("path: crack paths computed with m = {m:.3}; fitted m = {fitted:.3}"));
         }
         let own_path = Some(OwnPath { factors: law, runs: run });
         return of_run_on_plate(Fit { own_path, ..fit }, &calibration.case, factors);

@@ -104,25 +104,15 @@ impl CalibrationCase {
                 .ok_or_else(|| input_missing("measured", "is missing", "write a section [measured] with files = [\"...csv\"]"))?;
             let of_table = |table: &Table| Case::from_table(table.clone(), &document.name, &document.folder);
             let (mut table, keys) = (document.table.clone(), || section::<MeasuredKeys>(measured, "measured"));
-            let case = match of_table(&table) {
-                Ok(case) => case,
-                Err(error) => {
-                    let read = keys().and_then(|keys| Ok((readings(&keys, &document.folder)?.0, keys)));
-                    // Why the readings do not give what is missing is the mistake then.
-                    let lacks = |wrong: &InputError| {
-                        wrong.value.is_none() && matches!(wrong.key.as_deref(), Some("loading" | "specimen.crack_length_mm"))
-                    };
-                    let is_theirs = matches!(&error, Error::Input(wrong) if lacks(wrong) || wrong.more.iter().any(lacks));
-                    let notes = match read.and_then(|(read, keys)| complete(&mut table, &read, &keys)) {
-                        Err(unread) if is_theirs => return Err(unread),
-                        Ok(notes) if !notes.is_empty() => notes,
-                        _ => return Err(error),
-                    };
-                    let mut case = of_table(&table)?;
-                    case.warnings.extend(notes);
-                    case
-                }
+            let counted = |read: &Measured| {
+                let mut counted = read.clone();
+                counted.leave_standing_out()?;
+                counted.leave_out(&keys()?.leave_out)?;
+                window(&counted, &keys()?)
             };
+            let read = || Ok(readings(&keys()?, &document.folder)?.0);
+            let (mut case, notes) = completed(&mut table, &of_table, &read, &counted)?;
+            case.warnings.extend(notes);
             let input = input.into_iter().chain(table).collect();
             Self::build(case, keys()?, section(&fit, "fit")?, &document.folder, input)
         };
@@ -140,6 +130,12 @@ impl CalibrationCase {
         check_through(&case.specimen)?;
         let formula = handbook(&case.specimen);
         let (mut measured, sources) = readings(&keys, folder)?;
+        if let Some(ratio) = measured.other_ratio(case.loading.ratio) {
+            let given = std::mem::replace(&mut case.loading.ratio, ratio);
+            case.warnings.push(format!(
+                "loading: law recorded at R = {ratio}, the R of the readings; loading.stress_ratio = {given} is not used"
+            ));
+        }
         measured.compare_with(&case.specimen, &case.material, &case.loading)?;
         measured.leave_standing_out()?;
         let read = measured.curves.clone();
@@ -151,7 +147,7 @@ impl CalibrationCase {
         if let Some(formula) =
             formula.as_ref().filter(|formula| ![case.specimen.crack_length, longest].iter().all(|a| formula.holds_at(*a)))
         {
-            warnings.push(format!("the fit window exceeds the range of the K formula ({}: {})", formula.name, formula.range));
+            warnings.push(format!("formula range: exceeded by the fit window ({}: {})", formula.name, formula.range));
         }
         let delta_k_ratio =
             formula.as_ref().map(|formula| delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum)));
@@ -189,10 +185,31 @@ impl CalibrationCase {
     }
 }
 
-/// Takes what a calibration does not say from its readings: the load, where all have the same, and the crack at the first one that counts.
-/// That of a central crack is asked for where no header says that lengths are tip to tip. What was taken, in words.
-/// Errors: a window without readings.
-fn complete(table: &mut Table, measured: &Measured, keys: &MeasuredKeys) -> Result<Vec<String>> {
+/// A case, with what its table does not say from readings, which goes into the table; what was taken, in words.
+/// Errors: as `of_table`; why readings do not give what is missing.
+pub fn completed(
+    table: &mut Table,
+    of_table: &dyn Fn(&Table) -> Result<Case>,
+    read: &dyn Fn() -> Result<Measured>,
+    counted: &dyn Fn(&Measured) -> Result<Measured>,
+) -> Result<(Case, Vec<String>)> {
+    let error = match of_table(table) {
+        Ok(case) => return Ok((case, Vec::new())),
+        Err(error) => error,
+    };
+    let of_readings = |key: &Option<String>| matches!(key.as_deref(), Some("loading" | "specimen.crack_length_mm"));
+    let lacks = |wrong: &InputError| wrong.value.is_none() && of_readings(&wrong.key);
+    let is_theirs = matches!(&error, Error::Input(wrong) if lacks(wrong) || wrong.more.iter().any(lacks));
+    match read().and_then(|read| complete(table, &read, counted)) {
+        Err(unread) if is_theirs => Err(unread),
+        Ok(notes) if !notes.is_empty() => Ok((of_table(table)?, notes)),
+        _ => Err(error),
+    }
+}
+
+/// The load, where all readings have the same, and the crack at the first one that counts. That of a central crack is asked for where no
+/// header says that lengths are tip to tip.
+fn complete(table: &mut Table, measured: &Measured, counted: &dyn Fn(&Measured) -> Result<Measured>) -> Result<Vec<String>> {
     const LENGTH: &str = "crack_length_mm";
     let mut notes = Vec::new();
     let load = measured.load();
@@ -213,10 +230,7 @@ fn complete(table: &mut Table, measured: &Measured, keys: &MeasuredKeys) -> Resu
         all(kind.keys()).iter().any(|key| key.name == LENGTH && key.group.is_none() && key.need == Need::Required);
     let is_half = kind.has_half_length();
     if is_one_length && (!is_half || measured.curves.iter().all(|curve| curve.source.is_tip_to_tip)) {
-        let mut counted = measured.clone();
-        counted.leave_standing_out()?;
-        counted.leave_out(&keys.leave_out)?;
-        let first = window(&counted, keys)?.curves.iter().map(|curve| curve.crack_length[0]).fold(f64::INFINITY, f64::min);
+        let first = counted(measured)?.curves.iter().map(|curve| curve.crack_length[0]).fold(f64::INFINITY, f64::min);
         let words = if is_half { " (half of the tip-to-tip length)" } else { "" };
         notes.push(format!("initial crack length: {} mm, from the first reading{words}", round_off(first / MM)));
         given.insert(LENGTH.to_owned(), Value::Float(round_off(first / MM)));
@@ -261,7 +275,7 @@ fn check_growth_rate(case: &Case) -> Result<()> {
 
 /// A threshold shapes no fit, since cracks grew in all of it, and stands in no record.
 fn unrecorded(case: &Case) -> Option<String> {
-    let line = "fatigue.delta_k_threshold_mpa_sqrt_m has no effect on the fit; set it in the cases that use the law";
+    let line = "threshold: fatigue.delta_k_threshold_mpa_sqrt_m has no effect on the fit; set it in the cases that use the law";
     (case.fatigue.threshold > 0.0).then(|| line.to_owned())
 }
 

@@ -102,12 +102,12 @@ impl Exponent {
     fn record_if_needed(file: &str, folder: &Folder, method: Method, delta_k_ratio: f64) -> Result<Self> {
         let of_record = Self::of_record(file, folder, method)?;
         if delta_k_ratio >= DELTA_K_RATIO_MIN {
-            let warning = format!("ΔK varies by a factor of {delta_k_ratio:.2}, enough to fit p; {file} not used");
+            let warning = format!("exponent: ΔK varies by a factor of {delta_k_ratio:.2}, enough to fit p; {file} not used");
             return Ok(Exponent { warning: Some(warning), ..Self::default() });
         }
         let (p, error) = (of_record.fixed.unwrap_or(f64::NAN), of_record.error);
         let few = format!("ΔK varies only by a factor of {delta_k_ratio:.2} (need {DELTA_K_RATIO_MIN})");
-        let warning = format!("{few}: p = {p:.4} ± {error:.4} taken from {file}");
+        let warning = format!("exponent: {few}: p = {p:.4} ± {error:.4} taken from {file}");
         Ok(Exponent { warning: Some(warning), ..of_record })
     }
 }

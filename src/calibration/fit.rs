@@ -107,7 +107,7 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     }
     if task.curves.len() > 1 {
         let at_ends = specimens.iter().filter(|curve| is_fitted && is_at_end(curve.constants.p));
-        let lines = at_ends.map(|curve| format!("specimen {}: {}", curve.name, end_of_range(curve.constants.p)));
+        let lines = at_ends.map(|curve| format!("exponent: specimen {}: {}", curve.name, end_of_range(curve.constants.p)));
         warnings.extend(first_of(lines.collect()));
     }
     warnings.extend(task.curves.iter().find_map(|curve| short_steps_warning(&curve.crack_length)));
@@ -120,13 +120,13 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let step_rates: Vec<Vec<StepRate>> = task.curves.iter().map(|curve| step_rates(curve, task.delta_k)).collect();
     let of_threshold = |(curve, rates): (&MeasuredCurve, &Vec<StepRate>)| {
         let (_, words) = threshold(rates.iter().map(|rate| (rate.log_k.exp(), rate.log_rate.exp() / MM_PER_CYCLE)))?;
-        Some(format!("specimen {}: {words}", curve.specimen))
+        Some(format!("threshold: specimen {}: {words}", curve.specimen))
     };
     warnings.extend(first_of(task.curves.iter().zip(&step_rates).filter_map(of_threshold).collect()));
     let ratio = paris.delta_k_max / paris.delta_k_min;
     if is_fitted && ratio < DELTA_K_RATIO_MIN {
         warnings.push(format!(
-            "m cannot be determined: ΔK varies only by a factor {ratio:.2} (need {DELTA_K_RATIO_MIN}); widen the window, or \
+            "exponent: m cannot be determined: ΔK varies only by a factor {ratio:.2} (need {DELTA_K_RATIO_MIN}); widen the window, or \
              fix p by [fit] record = \"fitted.toml\", or by parameters = [\"a\"] and p = ..."
         ));
     }
@@ -173,7 +173,7 @@ fn population(task: &FitTask<'_>, law: &PowerLaw, warnings: &mut Vec<String>) ->
     match specimens.and_then(|specimens| fit_population(&specimens, task.fixed_p)) {
         Ok(population) => Some(population),
         Err(error) => {
-            warnings.push(format!("no scatter of lives: {error}"));
+            warnings.push(format!("scatter: none of lives: {error}"));
             None
         }
     }
@@ -232,7 +232,7 @@ fn remarks(task: &FitTask<'_>, runs: &[Vec<OutlierRun>]) -> Vec<String> {
     if lines.len() > DOUBTS_SHOWN {
         let more = lines.len() - DOUBTS_SHOWN;
         lines.truncate(DOUBTS_SHOWN);
-        lines.push(format!("{more} more messages of this kind: `perilife rates` lists all"));
+        lines.push(format!("outliers: {more} more messages of this kind: `perilife rates` lists all"));
     }
     lines
 }
@@ -249,7 +249,8 @@ fn short_steps_warning(lengths: &[f64]) -> Option<String> {
     let short = lengths.windows(2).filter(|pair| pair[1] - pair[0] < STEP_MIN * (1.0 - 1e-9)).count();
     let (steps, least) = (lengths.len().saturating_sub(1), STEP_MIN / MM);
     let what = "such readings are merged for the error of the fit; read less often";
-    (short > 0).then(|| format!("{short} of {steps} steps between readings are under {least} mm (ASTM E647, 8.6.2): {what}"))
+    (short > 0)
+        .then(|| format!("readings: {short} of {steps} steps between them are under {least} mm (ASTM E647, 8.6.2): {what}"))
 }
 
 impl Fit {

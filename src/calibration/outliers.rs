@@ -257,7 +257,7 @@ pub fn doubts_beside(curve: &MeasuredCurve, runs: &[OutlierRun], delta_k: &dyn F
 fn named(curve: &MeasuredCurve, runs: &[OutlierRun]) -> Vec<String> {
     let mut lines: Vec<String> = runs.iter().take(RUNS_NAMED).map(|run| run_warning(curve, *run)).collect();
     if runs.len() > RUNS_NAMED {
-        lines.push(format!("specimen {}: {} more runs of outliers", curve.specimen, runs.len() - RUNS_NAMED));
+        lines.push(format!("outliers: specimen {}: {} more runs", curve.specimen, runs.len() - RUNS_NAMED));
     }
     lines
 }
@@ -280,7 +280,7 @@ fn run_warning(curve: &MeasuredCurve, run: OutlierRun) -> String {
     let [start, end] = [window.from_cycles, window.to_cycles].map(Option::unwrap_or_default);
     let [first, last] = [from, to].map(|reading| round_off(curve.crack_length[reading] / MM));
     format!(
-        "{}outliers: from {first} to {last} mm specimen {} grew at {factor:.2} times the rate of its other readings at equal \
+        "outliers: {}from {first} to {last} mm specimen {} grew at {factor:.2} times the rate of its other readings at equal \
          ΔK; excluded from the fit; if the test explains it, set measured.leave_out = [{{ specimen = \"{}\", from_cycles = \
          {start}, to_cycles = {end}, reason = \"...\" }}]",
         place(curve, from, to),
@@ -378,7 +378,7 @@ fn level_warning(curve: &MeasuredCurve, rates: &[StepRate], runs: &[OutlierRun])
     }
     let StepRate { from, to, .. } = rates[shift.rate];
     Some(format!(
-        "{}rate changes in specimen {}: above {} mm it is {:.2} times that before at equal ΔK (F = {:.0}, common m {:.2}); if \
+        "outliers: {}rate changes in specimen {}: above {} mm it is {:.2} times that before at equal ΔK (F = {:.0}, common m {:.2}); if \
          the load changed, give it for every reading (columns force_max_kn and force_min_kn), else exclude the readings \
          before or after it (measured.leave_out or the window of crack lengths)",
         place(curve, from, to),

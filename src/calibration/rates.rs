@@ -238,7 +238,7 @@ pub fn threshold(rates: impl Iterator<Item = (f64, f64)>) -> Option<(f64, String
     let line = line(&log_rate, &log_k).filter(|_| log_k.len() >= 5)?;
     let (k, count) = (10_f64.powf(line.intercept - 7.0 * line.slope), log_k.len());
     let words = format!(
-        "threshold: ΔK_th = {k:.3} MPa√m at 1e-7 mm/cycle (ASTM E647 line through {count} rates); for a law without a threshold set \
+        "ΔK_th = {k:.3} MPa√m at 1e-7 mm/cycle (ASTM E647 line through {count} rates); for a law without a threshold set \
          fatigue.delta_k_threshold_mpa_sqrt_m"
     );
     Some((k, words))

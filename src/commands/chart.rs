@@ -92,13 +92,9 @@ fn command(args: &Args) -> String {
 fn line(record: &BenchmarkRecord) -> String {
     let keys = record.request.set.join(" ");
     let told = match &record.outcome {
-        Outcome::Done(run) => {
-            format!(
-                "{:>9} {:>8} %  ratio {}",
-                seconds(run.wall_s),
-                digits(run.error_percent),
-                digits(run.wall_s / record.reference_s)
-            )
+        Outcome::Done(BenchmarkRun { wall_s, error_percent, .. }) => {
+            let [error, ratio] = [*error_percent, wall_s / record.reference_s].map(digits);
+            format!("{:>9} {error:>8} %  ratio {ratio}", seconds(*wall_s))
         }
         Outcome::Refused(reason) => format!("refused: {reason}"),
         Outcome::Failed(reason) => format!("failed: {reason}"),

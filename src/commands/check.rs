@@ -30,7 +30,7 @@ pub fn run(args: &Args) -> Result<()> {
     let mut checked = check_file(&args.file, &args.set)?;
     if let Some(path) = &args.picture {
         match std::mem::take(&mut checked.drawn).svg() {
-            None => args.console.warn("no picture is written: tables of rates have no plate"),
+            None => args.console.warn("picture: none is written: tables of rates have no plate"),
             Some(drawing) => {
                 let sort = Sort { option: "--picture", sign: SIGN.as_bytes() };
                 OutputFile::claim(path, sort, &checked.provenance)?.write(drawing.as_bytes())?;

@@ -200,7 +200,7 @@ impl Keeper {
             && !std::mem::replace(&mut last.has_failed, true)
         {
             // A run that cannot be kept is still worth its end.
-            self.warn(&format!("{error}: running on without checkpoints"));
+            self.warn(&format!("checkpoint: {error}: running on without checkpoints"));
         }
         (last.at, last.cost) = (Instant::now(), begun.elapsed());
     }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use clap::ValueEnum;
 use clap_complete::{Shell, generate};
 
 use super::command_line;
@@ -9,46 +10,20 @@ use super::console::Console;
 use perilife_base::error::{Error, Result};
 use perilife_base::input::STREAM;
 
-/// What is made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Form {
-    /// bash
-    Bash,
-    /// elvish
-    Elvish,
-    /// fish
-    Fish,
-    /// PowerShell
-    Powershell,
-    /// zsh
-    Zsh,
-    /// Man page (roff), for `man -l`
-    Man,
-}
-
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Shell, or `man`
-    #[arg(value_name = "SHELL")]
-    pub form: Form,
+    /// Shell, or man: manual page (roff), for `man -l`
+    #[arg(value_name = "SHELL", value_parser = ["bash", "elvish", "fish", "powershell", "zsh", "man"])]
+    pub form: String,
 }
 
 pub fn run(args: &Args) -> Result<()> {
-    let mut command = command_line();
-    let shell = match args.form {
-        Form::Bash => Shell::Bash,
-        Form::Elvish => Shell::Elvish,
-        Form::Fish => Shell::Fish,
-        Form::Powershell => Shell::PowerShell,
-        Form::Zsh => Shell::Zsh,
-        Form::Man => {
-            let mut page = Vec::new();
-            let made = clap_mangen::Man::new(command).render(&mut page);
-            made.map_err(|error| Error::file(Path::new(STREAM), "cannot write", error))?;
-            return Console::default().result(&String::from_utf8_lossy(&page));
-        }
-    };
-    let mut script = Vec::new();
-    generate(shell, &mut command, "perilife", &mut script);
-    Console::default().result(&String::from_utf8_lossy(&script))
+    let (mut command, mut text) = (command_line(), Vec::new());
+    match Shell::from_str(&args.form, true) {
+        Ok(shell) => generate(shell, &mut command, "perilife", &mut text),
+        Err(_) => clap_mangen::Man::new(command)
+            .render(&mut text)
+            .map_err(|error| Error::file(Path::new(STREAM), "cannot write", error))?,
+    }
+    Console::default().result(&String::from_utf8_lossy(&text))
 }

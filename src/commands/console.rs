@@ -201,17 +201,9 @@ pub fn print_error_object(error: &Error) {
 }
 
 pub fn error_words(error: &Error) -> String {
-    let plain = match error {
-        Error::Input(_) => told_of_file(&format!("error: {error}")),
-        _ => told(&format!("error: {error}")),
-    };
-    if !std::io::stderr().is_terminal() {
-        return plain;
-    }
-    match error {
-        Error::Input(input) => with_source_line(input).unwrap_or(plain),
-        _ => plain,
-    }
+    let Error::Input(input) = error else { return told(&format!("error: {error}")) };
+    let shown = std::io::stderr().is_terminal().then(|| with_source_line(input)).flatten();
+    shown.unwrap_or_else(|| told_of_file(&format!("error: {error}")))
 }
 
 /// The message with the file's line shown; `None` if file or line are not known or the file has gone.
@@ -302,10 +294,8 @@ fn look(bar: &ProgressBar, shared: &Shared, limit: Option<Duration>) {
 
 impl Observer for RunProgress {
     fn block_done(&self, progress: &Progress) -> bool {
-        self.advance(
-            progress.share,
-            Some(told(&format!("N = {}  a = {:.1} mm", PLAIN.whole(progress.cycles), progress.crack_length / MM))),
-        )
+        let (cycles, length) = (PLAIN.whole(progress.cycles), progress.crack_length / MM);
+        self.advance(progress.share, Some(told(&format!("N = {cycles}  a = {length:.1} mm"))))
     }
 
     fn watch(&self) -> Option<Arc<Watch>> {

@@ -32,8 +32,6 @@ pub mod checkpoint;
 pub mod console;
 pub mod signals;
 
-use std::path::Path;
-
 use clap::{CommandFactory, Parser, Subcommand};
 use tracing_subscriber::EnvFilter;
 
@@ -41,16 +39,7 @@ use perilife_base::error::Result;
 use perilife_base::input::Document;
 use perilife_base::units::shown::show;
 use perilife_base::units::us::System;
-use perilife_growth::case::Case;
 use perilife_runner::Task;
-
-/// Specimen, material, load and model of a case or calibration file, of whose fatigue law nothing is asked: a fitted record that does not
-/// exist yet is no obstacle.
-fn case_without_law(path: &Path, overrides: &[String]) -> Result<Case> {
-    let case = Case::plate_of(&Document::read(path, overrides)?)?;
-    case.specimen.check_growth().map_err(|error| error.in_file(path))?;
-    Ok(case)
-}
 
 /// The overrides with what flags of `[output]` stand for.
 fn with_output<const N: usize>(set: &[String], flags: [(&str, bool); N]) -> Vec<String> {

@@ -3,15 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
+use toml::Table;
 
-use super::case_without_law;
 use super::console::Console;
 use perilife_base::error::{Result, input};
-use perilife_base::input::{Folder, Opened, STREAM, number};
+use perilife_base::input::{Document, Folder, Opened, STREAM, number};
 use perilife_base::table::units::{CycleUnit, LengthUnit, LoadUnit};
 use perilife_base::table::{Decimal, Sheet};
 use perilife_base::units::shown::{column, per};
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_calibration::case::completed;
 use perilife_calibration::outliers::doubts;
 use perilife_calibration::paris::implausibility_of;
 use perilife_calibration::rates::{HEADER, RateMethod, RatePoint, add_delta_k, paris_line, rates, table, threshold};
@@ -104,7 +105,7 @@ pub fn run(args: &Args) -> Result<()> {
     let measured =
         if args.measured.is_empty() { Measured::default() } else { read_into(&opened, &args.measured, &args.import()?)? };
     let mut measured = measured.of_precision("--precision-mm", args.precision_mm)?;
-    let case = args.specimen.as_deref().map(|path| case_without_law(path, &args.set)).transpose()?;
+    let case = args.specimen.as_deref().map(|path| specimen(path, &args.set, &mut measured)).transpose()?;
     if let Some(case) = &case {
         measured.compare_with(&case.specimen, &case.material, &case.loading)?;
         measured.warnings.extend(ratio_warnings(&measured.curves, &case.loading));
@@ -142,6 +143,22 @@ pub fn run(args: &Args) -> Result<()> {
     args.console.object(&object(&specimens, method))
 }
 
+/// The case of `--specimen`; the load and crack length that it does not give are those of the readings.
+fn specimen(path: &Path, set: &[String], measured: &mut Measured) -> Result<Case> {
+    let document = Document::read(path, set)?;
+    let plate = |table: &Table| {
+        let mut own = document.clone();
+        own.table.clone_from(table);
+        let case = Case::plate_of(&own)?;
+        case.specimen.check_growth().map(|()| case)
+    };
+    let of_readings =
+        completed(&mut document.table.clone(), &plate, &|| Ok(measured.clone()), &|read: &Measured| Ok(read.clone()));
+    let (case, notes) = of_readings.map_err(|error| document.locate(error))?;
+    measured.warnings.extend(notes);
+    Ok(case)
+}
+
 fn specimen_rates(measured: &Measured, method: RateMethod, case: Option<&Case>) -> Result<Vec<SpecimenRates>> {
     let of_curve = |curve: &MeasuredCurve| SpecimenRates {
         name: curve.specimen.clone(),
@@ -158,9 +175,10 @@ fn specimen_rates(measured: &Measured, method: RateMethod, case: Option<&Case>) 
     for (specimen, curve) in specimens.iter_mut().zip(&measured.curves) {
         add_delta_k(&mut specimen.points, case, &delta_k);
         let law = paris_line(&specimen.points).and_then(|law| implausibility_of(10_f64.powf(law.intercept), law.slope));
-        let of_law = law.map(|words| format!("specimen {}: {words}", curve.specimen));
-        let outside = outside_formula(&specimen.points, &formula).map(|words| format!("specimen {}: {words}", curve.specimen));
-        let slow = specimen.threshold().map(|(_, words)| format!("specimen {}: {words}", curve.specimen));
+        let named = |name: &'static str| move |words: String| format!("{name}: specimen {}: {words}", curve.specimen);
+        let of_law = law.map(named("units"));
+        let outside = outside_formula(&specimen.points, &formula).map(named("formula range"));
+        let slow = specimen.threshold().map(|(_, words)| named("threshold")(words));
         specimen.warnings = doubts(curve, &delta_k).into_iter().chain(of_law).chain(outside).chain(slow).collect();
     }
     Ok(specimens)
@@ -263,12 +281,12 @@ impl MaterialRates {
             let (law, fitted) = match library_law(&name, thickness_mm * MM, ratio, &folder) {
                 Ok(found) => found,
                 Err(error) => {
-                    lines.push(format!("{name}: no growth rates: {error}"));
+                    lines.push(format!("rates: {name}: none: {error}"));
                     first = first.or(Some(error));
                     continue;
                 }
             };
-            lines.extend(law.beyond_ratio(ratio).map(|words| format!("{name}: {words}")));
+            lines.extend(law.beyond_ratio(ratio).map(|words| format!("rates: {name}: {words}")));
             let k_max = |delta_k: f64| delta_k * MPA_SQRT_M / (1.0 - ratio.max(0.0));
             let rate = |delta_k: f64| law.rate(k_max(delta_k), ratio) / MM_PER_CYCLE;
             let at = |k: usize| RANGE[0] * (RANGE[1] / RANGE[0]).powf(k as f64 / POINTS as f64);

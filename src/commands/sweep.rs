@@ -115,7 +115,7 @@ pub fn run(args: &Args) -> Result<()> {
     let share = if args.engine == Engine::Slurm { Share::Parts } else { Share::Alone };
     let folder = SweepFolder::open(&args.out, plan, &read, share)?;
     if let Some(changed) = &folder.changed {
-        args.console.warn(&format!("{}: {changed}", args.out.display()));
+        args.console.warn(&format!("sweep: {}: {changed}", args.out.display()));
     }
     signals::say_at_the_end(&format!("finished cases are in {}; run the same command to resume", args.out.display()));
     let left = left(&cases, &folder, !args.summary_only);
@@ -134,12 +134,8 @@ pub fn run(args: &Args) -> Result<()> {
             args.console.note(&format!("{} jobs queued at {place}; they continue if you interrupt this command", left.len()));
             service::run(&url, &left, &folder, !args.summary_only, &args.console.count(&sweep.name, left.len()))?;
         }
-        Engine::Slurm => {
-            let wait = submit(args, &folder, &left)?;
-            if !wait {
-                return Ok(());
-            }
-        }
+        Engine::Slurm if !submit(args, &folder, &left)? => return Ok(()),
+        Engine::Slurm => {}
     }
     finish(&folder, begun, &args.console)
 }
@@ -240,7 +236,7 @@ fn sbatch(args: &Args, script: &Path, count: usize) -> Result<bool> {
     let words = words.trim().replace('\n', "; ");
     fail_if!(job.is_empty(), cannot(std::io::Error::other(format!("{status}: {words}"))));
     if !status.success() {
-        console.warn(&format!("job {job}: a task failed ({status}) {words}; see {LOGS}"));
+        console.warn(&format!("sweep: job {job}: a task failed ({status}) {words}; see {LOGS}"));
     }
     Ok(args.slurm.wait)
 }

@@ -92,7 +92,7 @@ impl<'a> BondStrain<'a> {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
         }
         let (shape, formula) = (case.shape()?, handbook(&case.specimen));
-        let words = "bonds spend their lives by A and p, the best power law: the curve of the fitted rates needs K of the tip, and no \
+        let words = "bonds: bonds spend their lives by A and p, the best power law: the curve of the fitted rates needs K of the tip, and no \
                      formula has it here; fatigue.driver = \"tip_field\" goes by the curve";
         let is_without = shape.is_some() && formula.is_none();
         Ok(BondStrain {

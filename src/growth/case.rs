@@ -19,7 +19,7 @@ pub use boundaries::{first_load, suits_points};
 pub use fatigue_keys::{Lot, remove_law};
 pub use fleet::{Fleet, InitialLength};
 pub(crate) use law_source::ratio_line;
-pub use law_source::{LIBRARY, fitted_record, library_law};
+pub use law_source::{fitted_record, library_law};
 pub use model::coarse_points;
 pub use model_keys::{REFINED, finer_nodes, usual_nodes};
 pub use pins::initial_plate;

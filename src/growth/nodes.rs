@@ -132,7 +132,7 @@ impl CrackedPlate for NodePlate {
             if is_last {
                 let other = if suits_points(case) { "; cross-check with model.method = \"peridynamics\"" } else { "" };
                 self.state.warnings.push(format!(
-                    "K of tip {tip} changes by {:.1} % on nodes {FINER} times finer ({nodes} nodes); its error may be as large{other}",
+                    "nodes: K of tip {tip} changes by {:.1} % on nodes {FINER} times finer ({nodes} nodes); its error may be as large{other}",
                     100.0 * change,
                 ));
                 break;

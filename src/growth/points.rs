@@ -72,7 +72,8 @@ pub struct PointPlate {
 }
 
 /// What is said of pins with clearance.
-const PINS: &str = "points: pin contact is that of the largest load, ΔK is too large (conservative); use model.method = \"element_free_galerkin\"";
+const PINS: &str =
+    "pins: contact is that of the largest load, ΔK is too large (conservative); use model.method = \"element_free_galerkin\"";
 /// Growth by the field of every tip on points.
 pub type TipField<'a> = Cracks<'a, PointPlate>;
 

@@ -294,7 +294,7 @@ fn load_column(table: &Table, column: Column, import: &Import, warnings: &mut Ve
         return Err(table.cell_fault(row, column.index).error(problem, remedy));
     }
     let (file, name) = (table.file.display(), &table.header[column.index]);
-    warnings.push(format!("{file}: {name} ignored (unknown load unit); the load of the case is used; {remedy}"));
+    warnings.push(format!("columns: {file}: {name} ignored (unknown load unit); the load of the case is used; {remedy}"));
     Ok(None)
 }
 
@@ -327,7 +327,7 @@ fn loads(table: &Table, columns: &[Column], import: &Import, warnings: &mut Vec<
         let largest = numbers.reduce(f64::max);
         warnings.extend(largest.filter(|largest| *largest >= 1.0).map(|_| {
             let name = &table.header[column.index];
-            format!("{}: {name} ignored (not a stress ratio); R of the case is used", table.file.display())
+            format!("columns: {}: {name} ignored (not a stress ratio); R of the case is used", table.file.display())
         }));
         if largest.is_none_or(|largest| largest >= 1.0) {
             found.clear();
@@ -346,7 +346,7 @@ fn not_specimens(table: &Table, columns: &[Column]) -> Option<String> {
     let statistics = columns.iter().filter(|column| column.role == Role::Statistic);
     let names: Vec<&str> = statistics.map(|column| table.header[column.index].as_str()).collect();
     let file = table.file.display();
-    (!names.is_empty()).then(|| format!("{file}: ignored (several specimens, or a model): {}", names.join(", ")))
+    (!names.is_empty()).then(|| format!("columns: {file}: ignored (several specimens, or a model): {}", names.join(", ")))
 }
 
 /// A line about columns that nobody asked for and whose names say nothing, or a load that is not read.
@@ -358,7 +358,7 @@ fn not_read(table: &Table, columns: &[Column]) -> Option<String> {
     let names: Vec<&str> = strange.map(|column| table.header[column.index].as_str()).filter(|name| !name.is_empty()).collect();
     let (file, ignored) = (table.file.display(), names.join(", "));
     let remedy = "if one is the load of every reading, set measured.columns = { force_max = \"...\" } (--column force_max=...)";
-    (!names.is_empty()).then(|| format!("{file}: ignored columns: {ignored}; {remedy}"))
+    (!names.is_empty()).then(|| format!("columns: {file}: ignored columns: {ignored}; {remedy}"))
 }
 
 fn says_the_same(table: &Table, column: usize, key: &str) -> Error {

@@ -72,6 +72,8 @@ pub struct Source {
     pub is_named_by_file: bool,
     /// Cycles of the file at the first reading of a window, which counts them from 0.
     pub cycles_before: f64,
+    /// Orientation and environment, as noted above its table.
+    pub noted: [Option<String>; 2],
 }
 
 /// Loads of the readings of a curve as a file has them.
@@ -246,8 +248,9 @@ pub const PROBLEMS_MAX: usize = 100;
 /// The first warnings of one kind, and how many more there are.
 pub fn first_of(mut warnings: Vec<String>) -> Vec<String> {
     let more = warnings.len().saturating_sub(PROBLEMS_MAX);
+    let name = warnings.first().and_then(|line| line.split_once(": ")).map_or(String::new(), |(name, _)| name.to_owned());
     warnings.truncate(PROBLEMS_MAX);
-    warnings.extend((more > 0).then(|| format!("and {more} more warnings of this kind")));
+    warnings.extend((more > 0).then(|| format!("{name}: and {more} more warnings of this kind")));
     warnings
 }
 
@@ -306,7 +309,7 @@ impl Measured {
         }
         let line = |curve: &MeasuredCurve| {
             let (file, name, life) = (curve.source.file.display(), &curve.specimen, curve.life());
-            format!("{file}: specimen {name}: no crack growth in {life:.0} cycles (run-out); excluded from the fit")
+            format!("readings: {file}: specimen {name}: no crack growth in {life:.0} cycles (run-out); excluded from the fit")
         };
         self.warnings.extend(first_of(self.curves.iter().filter(|curve| stands(curve)).map(line).collect()));
         self.curves.retain(|curve| !stands(curve));
@@ -322,7 +325,7 @@ impl Measured {
                 let [own, earlier] = [reading, before].map(|reading| round_off(curve.crack_length[reading] / MM));
                 let (place, line) = (curve.place(reading), curve.line(before));
                 format!(
-                    "{place}: {own} mm, after {earlier} mm on line {line}: crack length drops again, likely a typing error; \
+                    "readings: {place}: {own} mm, after {earlier} mm on line {line}: crack length drops again, likely a typing error; \
                      excluded from the fit. Correct the number"
                 )
             }));
@@ -355,7 +358,7 @@ impl Measured {
             let uneven: Vec<usize> = (0..curve.side_difference.len()).filter(|&i| curve.side_difference[i] > limit).collect();
             let Some(&first) = uneven.first() else { continue };
             of_sides.push(format!(
-                "{}:{}: specimen {}: front and back crack lengths differ by up to {:.2} mm; {} of {} readings exceed {:.2} mm \
+                "crack front: {}:{}: specimen {}: front and back crack lengths differ by up to {:.2} mm; {} of {} readings exceed {:.2} mm \
                  (ASTM E647)",
                 curve.source.file.display(),
                 curve.line(first),

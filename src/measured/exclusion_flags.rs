@@ -47,7 +47,7 @@ pub(super) fn rejected(table: &Table, read: &[usize]) -> Option<String> {
     let (file, name, count) = (table.file.display(), &table.header[column], found.count() + 1);
     let rows = if count == 1 { "row" } else { "rows" };
     Some(format!(
-        "{file}:{line}: {name} = \"{cell}\" looks like a rejection mark ({count} {rows}); these readings are used; exclude them \
+        "readings: {file}:{line}: {name} = \"{cell}\" looks like a rejection mark ({count} {rows}); these readings are used; exclude them \
          by measured.leave_out, or by a column valid with yes or no"
     ))
 }
@@ -96,7 +96,7 @@ pub(super) fn exclude_flagged(table: &mut Table, import: &Import) -> Result<()> 
             }
             let (file, line, cell, more) = (table.file.display(), first.line, first.cell(index), open.len() - 1);
             let note = format!(
-                "{file}:{line}: {name} = \"{cell}\" is neither yes nor no ({more} more cells); these rows are used; write yes or no"
+                "table: {file}:{line}: {name} = \"{cell}\" is neither yes nor no ({more} more cells); these rows are used; write yes or no"
             );
             table.notes.push(note);
         }

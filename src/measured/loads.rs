@@ -37,15 +37,17 @@ impl Measured {
             (LoadMeasure::Stress, true) => ("stress_range_mpa", MPA),
         };
         let is_alike = |loads: &&Loads| (loads.measure, loads.is_range) == (first.measure, first.is_range);
-        let of = |values: fn(&Loads) -> &Vec<f64>, slack: f64| {
-            let mut all = loads.iter().flat_map(|loads| values(loads)).copied();
-            let value = all.next()?;
-            // NaN, which stands where the file says nothing, is like nothing.
-            all.all(|other| (other - value).abs() <= slack * value.abs()).then_some(value).filter(|value| value.is_finite())
-        };
-        let load = of(|loads| &loads.maximum, SAME_LOAD).filter(|_| loads.iter().all(is_alike));
-        let ratio = of(|loads| &loads.ratio, SAME_LOAD).map(|ratio| ("stress_ratio", round_off(ratio)));
+        let load = common(&loads, |loads| &loads.maximum, |load| SAME_LOAD * load.abs()).filter(|_| loads.iter().all(is_alike));
+        let ratio = common(&loads, |loads| &loads.ratio, |ratio| SAME_LOAD * ratio.abs());
+        let ratio = ratio.map(|ratio| ("stress_ratio", round_off(ratio)));
         load.map(|load| (key, round_off(load / unit))).into_iter().chain(ratio).collect()
+    }
+
+    /// The stress ratio of all readings where it is one, and not that of the case.
+    pub fn other_ratio(&self, of_case: f64) -> Option<f64> {
+        let loads: Vec<&Loads> = self.curves.iter().map(|curve| curve.loads.as_ref()).collect::<Option<_>>()?;
+        let one = common(&loads, |loads| &loads.ratio, |_| SAME_RATIO)?;
+        ((one - of_case).abs() > SAME_RATIO).then(|| round_off(one))
     }
 
     /// The same in words.
@@ -137,7 +139,7 @@ impl Measured {
             let more = curve.cycles.len() - first - 1;
             let more = if more > 0 { format!(", with the {more} after it") } else { String::new() };
             let (place, length) = (curve.place(first), round_off(curve.crack_length[first] / MM));
-            left_out.push(format!("{place}: reading at {length} mm is at fracture ({why}); excluded{more}"));
+            left_out.push(format!("readings: {place}: reading at {length} mm is at fracture ({why}); excluded{more}"));
             *curve = curve.of_readings(&(0..first).collect::<Vec<_>>());
         }
         self.warnings.extend(first_of(left_out));
@@ -171,6 +173,14 @@ impl Measured {
         }
         Ok(())
     }
+}
+
+/// The value that all readings have but for a slack.
+fn common(loads: &[&Loads], values: fn(&Loads) -> &Vec<f64>, slack: fn(f64) -> f64) -> Option<f64> {
+    let mut all = loads.iter().flat_map(|loads| values(loads)).copied();
+    let value = all.next()?;
+    // NaN, which stands where the file says nothing, is like nothing.
+    all.all(|other| (other - value).abs() <= slack(value)).then_some(value).filter(|value| value.is_finite())
 }
 
 /// Warnings of readings at other stress ratios than that of the case, where one law of one ratio is fitted to all.
@@ -278,7 +288,7 @@ fn ratio_warning(curve: &MeasuredCurve, loads: &Loads, loading: &Loading) -> Opt
     let apart = low - loading.ratio < -SAME_RATIO || high - loading.ratio > SAME_RATIO;
     (low <= high && apart).then(|| {
         format!(
-            "specimen {}: R of the readings is {low:.3} to {high:.3}; ΔK uses each reading's R, the law is recorded at \
+            "loading: specimen {}: R of the readings is {low:.3} to {high:.3}; ΔK uses each reading's R, the law is recorded at \
              loading.stress_ratio = {}",
             curve.specimen, loading.ratio
         )

@@ -237,7 +237,7 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
     }
     if table.flagged > 0 {
         let (of, file) = (table.flagged + table.rows.len(), file.display());
-        table.warnings.push(format!("{file}: {} of {of} flagged rates excluded", table.flagged));
+        table.warnings.push(format!("rates: {file}: {} of {of} flagged rates excluded", table.flagged));
     }
     if k_max.is_some() {
         return Ok(table);

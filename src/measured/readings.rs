@@ -46,12 +46,36 @@ pub(super) fn curves_of(table: &Table, layout: &Layout, of_plate: bool, fate: Fa
         let falls = curve.crack_length.windows(2).filter(|pair| pair[1] < pair[0]).count();
         if falls > 0 {
             let (file, name) = (table.file.display(), &curve.specimen);
-            falling
-                .push(format!("{file}: specimen {name}: crack length drops at {falls} of {count} readings (treated as noise)"));
+            let drops = format!("crack length drops at {falls} of {count} readings (treated as noise)");
+            falling.push(format!("readings: {file}: specimen {name}: {drops}"));
         }
     }
     measured.warnings.extend(first_of(falling));
     Ok(measured)
+}
+
+/// Crack plane orientations after ASTM E1823; labels that their value needs no more; words that only an environment has.
+const ORIENTATIONS: [&str; 6] = ["L-T", "T-L", "L-S", "S-L", "S-T", "T-S"];
+const LABELS: [&str; 5] = ["test environment", "environment", "test temperature", "temperature", "atmosphere"];
+const ENVIRONMENTS: [&str; 9] = ["air", "vacuum", "humid", "humidity", "seawater", "salt", "room temperature", "°c", "deg c"];
+
+/// Orientation and environment of a test, as the lines above a table note them.
+fn noted(table: &Table) -> [Option<String>; 2] {
+    let lines = || table.preamble.iter().map(|(_, text)| text.as_str());
+    let is_written = |c: char| c.is_alphanumeric() || "-°%.".contains(c);
+    let mut words = lines().flat_map(|line| line.split(|c| !is_written(c)));
+    let part = |part: &str| {
+        let label = LABELS.iter().find(|label| part.get(..label.len()).is_some_and(|own| own.eq_ignore_ascii_case(label)));
+        let value = label.map_or(part, |label| part[label.len()..].trim_start_matches([' ', ':', '=']));
+        let own = format!(" {} ", part.to_lowercase().replace(|c| !is_written(c), " "));
+        let is_environment = label.is_some() || ENVIRONMENTS.iter().any(|name| own.contains(&format!(" {name} ")));
+        (is_environment && !value.is_empty()).then(|| value.to_owned())
+    };
+    let parts = lines().flat_map(|line| line.split(['|', ';', '\t']).flat_map(|part| part.split(", ")));
+    let found: Vec<String> =
+        parts.filter_map(|own| part(own.trim_matches(|c: char| c.is_whitespace() || "#%*\"".contains(c)))).collect();
+    let orientation = words.find(|word| ORIENTATIONS.contains(word)).map(str::to_owned);
+    [orientation, Some(found.join(", ")).filter(|words| !words.is_empty())]
 }
 
 /// Curves of a series, specimens in the order of their first rows.
@@ -62,7 +86,8 @@ fn curves(table: &Table, decimal: Decimal, series: &Series, fate: Fate<'_>) -> R
         let is_named_by_file = series.specimen.is_none() && series.own.is_empty();
         let is_tip_to_tip = series.lengths.iter().all(Column::is_tip_to_tip);
         let length_unit = length.factor;
-        let source = Source { file, length_column, length_unit, is_tip_to_tip, is_named_by_file, ..Source::default() };
+        let noted = noted(table);
+        let source = Source { file, length_column, length_unit, is_tip_to_tip, is_named_by_file, noted, ..Source::default() };
         MeasuredCurve { specimen: name.to_owned(), source, ..MeasuredCurve::default() }
     };
     // A specimen that has columns is one, even if nothing stands in them.
@@ -94,7 +119,7 @@ fn correct(curve: &mut MeasuredCurve, table: &Table, decimal: Decimal, optical: 
     let both = both.map(|(own, row)| Ok((own, value(table, row, optical, decimal)?))).collect::<Result<Vec<_>>>()?;
     let (own, read): (Vec<f64>, Vec<f64>) = both.into_iter().unzip();
     let (start, name) = (
-        format!("{}: specimen {}: {}", table.file.display(), curve.specimen, curve.source.length_column),
+        format!("readings: {}: specimen {}: {}", table.file.display(), curve.specimen, curve.source.length_column),
         &table.header[optical.index],
     );
     let Some(line) = line(&own, &read).filter(|line| line.slope > 0.0) else {

@@ -49,7 +49,7 @@ pub fn default_spacing(specimen: &Specimen) -> (f64, Option<String>) {
     // A flaw has at least a point of its own.
     let spacing = finest.min(smallest);
     let warning = format!(
-        "model.spacing_mm: {} mm used ({} mm needs more than {POINTS_FOR_GAP:.0e} points); a gap of {} mm at a tip has fewer \
+        "spacing: {} mm used ({} mm needs more than {POINTS_FOR_GAP:.0e} points); a gap of {} mm at a tip has fewer \
          than {POINTS_ON_GAP} spacings or a flaw of {} mm fewer than {POINTS_ON_FLAW}; set model.spacing_mm if its growth \
          decides the life",
         round_mm(spacing),

@@ -152,7 +152,7 @@ impl Judgement {
 /// A message for the user: a check that did not pass, or a warning.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Message {
-    /// Name of the check; none of a warning.
+    /// Name of the check or the warning.
     pub subject: Option<Cow<'static, str>>,
     /// `failed`, `caution`, `unchecked` or `warning`.
     pub kind: &'static str,
@@ -171,8 +171,10 @@ impl Message {
         Some(Message { subject: Some(check.name.clone()), kind, text: check.words.clone(), remedy: check.remedy.clone() })
     }
 
-    pub fn warning(text: &str) -> Self {
-        Message { subject: None, kind: "warning", text: text.to_owned(), remedy: None }
+    /// Of a line `NAME: what was found`; names are listed in the guide (`src/guide/validity.md`).
+    pub fn warning(line: &str) -> Self {
+        let subject = line.split_once(": ").map(|(name, _)| name.to_owned().into());
+        Message { subject, kind: "warning", text: line.to_owned(), remedy: None }
     }
 }
 

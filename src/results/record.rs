@@ -243,7 +243,9 @@ impl RunRecord {
         let governing = GoverningCrack::of(&case.specimen, &prediction.curve);
         let length = |row: Option<&CurvePoint>| row.and_then(|row| known(governing.length(row) / MM));
         // What the run found comes first: it counts more than what an assumption may do.
-        let warnings = prediction.warnings.iter().chain(&judgement.warnings).chain(&case.warnings);
+        // A strength that the first load exceeds is the refusal, and is said once.
+        let of_case = case.warnings.iter().filter(|line| judgement.refusal.is_none() || !line.starts_with("first load: "));
+        let warnings = prediction.warnings.iter().chain(&judgement.warnings).chain(of_case);
         RunRecord {
             name: case.name.clone(),
             life_cycles: prediction.life(),

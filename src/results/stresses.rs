@@ -124,14 +124,14 @@ pub fn warnings(stressed: &Stressed) -> Vec<String> {
     let mut warnings = Vec::new();
     if !sharp.is_empty() {
         warnings.push(format!(
-            "{}: elastic stress at a sharp corner is singular: the value depends on the nodes; draw the \
+            "stress: {}: elastic stress at a sharp corner is singular: the value depends on the nodes; draw the \
              corner with its radius, as several corners of outline_mm",
             sharp.join(", ")
         ));
     }
     if let (false, Some(change)) = (stressed.is_settled(), stressed.change) {
         warnings.push(format!(
-            "the largest stress of an edge still changed by {:.2} % in the last refinement (target {} %); give more \
+            "stress: the largest stress of an edge still changed by {:.2} % in the last refinement (target {} %); give more \
              model.nodes",
             100.0 * change,
             100.0 * SETTLED

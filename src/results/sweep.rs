@@ -55,8 +55,15 @@ pub struct Outcome {
     #[serde(default)]
     pub try_again: bool,
     #[serde(default)]
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Told>,
     pub has_files: bool,
+}
+
+/// A message of a case, with its effect on the life or the share of the life where that is known.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Told {
+    pub words: String,
+    pub percent: Option<f64>,
 }
 
 impl Outcome {
@@ -73,8 +80,11 @@ impl Outcome {
         }
         let text = |value: &Value| value.as_str().map(str::to_owned);
         let all = |key: &str| figures[key].as_array().into_iter().flatten();
-        let warned = all("warnings").filter_map(text);
-        let cautions = all("checks").filter(|check| check["verdict"] == "caution").filter_map(|check| text(&check["words"]));
+        let rounded = |percent: f64| (100.0 * percent).round() / 100.0;
+        let told = |words, percent: &Value| Some(Told { words: text(words)?, percent: percent.as_f64().map(rounded) });
+        let warned = all("warnings").filter_map(|line| told(line, &Value::Null));
+        let cautions = all("checks").filter(|check| check["verdict"] == "caution");
+        let cautions = cautions.filter_map(|check| told(&check["words"], &check["effect_percent"]));
         Outcome {
             life_cycles: figures["life_cycles"].as_f64(),
             stop_reason: text(&figures["stop_reason"]),
@@ -177,7 +187,7 @@ pub struct SharedWarning {
     /// The first case that has it, and its words.
     pub first: String,
     pub warning: String,
-    /// Of warnings that begin with a share the largest, and its case.
+    /// The largest effect or share of those that have one, and its case.
     pub largest_percent: Option<f64>,
     pub largest_in: Option<String>,
 }
@@ -343,28 +353,25 @@ pub fn read_outcome(folder: &Path, input: &str) -> Option<Outcome> {
 
 const WARNINGS_MAX: usize = 20;
 
-/// Warnings by number of cases; those that differ in their numbers only are one, told by the first case that has it. Where they begin with a
-/// share, as of a life outside the range of a formula, the largest stands beside it.
+/// Warnings by number of cases; those that differ in their numbers only are one, told by the first case that has it, with the largest effect.
 fn warnings(outcomes: &[Option<Outcome>]) -> Vec<SharedWarning> {
-    let mut found: BTreeMap<String, Vec<(usize, &str)>> = BTreeMap::new();
+    let mut found: BTreeMap<String, Vec<(usize, &Told)>> = BTreeMap::new();
     for (i, outcome) in outcomes.iter().enumerate() {
         for warning in outcome.iter().flat_map(|outcome| &outcome.warnings) {
-            let words = warning.chars().filter(|c| !c.is_ascii_digit()).collect();
+            let words = warning.words.chars().filter(|c| !c.is_ascii_digit()).collect();
             found.entry(words).or_default().push((i + 1, warning));
         }
     }
-    let mut found: Vec<Vec<(usize, &str)>> = found.into_values().collect();
+    let mut found: Vec<Vec<(usize, &Told)>> = found.into_values().collect();
     found.sort_by_key(|all| (std::cmp::Reverse(all.len()), all[0].0));
-    let told = |all: Vec<(usize, &str)>| {
-        let (first, text) = all[0];
-        let shares = all
-            .iter()
-            .filter_map(|(case, text)| Some((text.split_once(" % ")?.0.rsplit(' ').next()?.parse::<f64>().ok()?, *case)));
+    let told = |all: Vec<(usize, &Told)>| {
+        let (first, one) = all[0];
+        let shares = all.iter().filter_map(|(case, told)| Some((told.percent?, *case)));
         let largest = shares.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
         SharedWarning {
             cases: all.len(),
             first: label(first),
-            warning: text.to_owned(),
+            warning: one.words.clone(),
             largest_percent: largest.map(|(share, _)| share),
             largest_in: largest.map(|(_, case)| label(case)),
         }

@@ -13,8 +13,8 @@ use perilife_calibration::exponent::FitKeys;
 use perilife_calibration::laws::case::{LawKeys, RatesKeys};
 use perilife_calibration::rates::RateMethod;
 use perilife_calibration::sweep::{DesignKeys, VaryKeys};
+use perilife_growth::case;
 use perilife_growth::case::record::FittedLaw;
-use perilife_growth::case::{self, LIBRARY};
 use perilife_growth::predict::StopReason;
 use perilife_growth::predict::tip_factors::StressIntensityMethod;
 use perilife_laws::growth_law::GrowthLawKind;
@@ -78,7 +78,6 @@ pub fn lines() -> Vec<(String, String, String)> {
         ("material.name".to_owned(), record.name, meaning)
     };
     all.extend(growth_data::records().into_iter().map(record));
-    all.push((GrowthLawKind::KEY.to_owned(), LIBRARY.to_owned(), "growth data of material.name".to_owned()));
     all.push((
         "specimen.outline_file".to_owned(),
         "part.dxf".to_owned(),

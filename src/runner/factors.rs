@@ -131,7 +131,7 @@ fn notes(case: &Case, tips: &[TipResult]) -> Result<Vec<String>> {
         return Err(Error::Mechanics(format!("{}: {why}", case.name)));
     }
     let mut said: Vec<String> = Vec::new();
-    for words in results().filter_map(|result| Some(format!("{}: {}", result.method, result.note.as_ref()?))) {
+    for words in results().filter_map(|result| Some(format!("methods: {}: {}", result.method, result.note.as_ref()?))) {
         if !said.contains(&words) {
             said.push(words);
         }

@@ -247,7 +247,8 @@ fn of_fit(calibration: &Calibration, watcher: &dyn Watcher) -> Result<Summary> {
     let kept = fit::Kept::of(&fitted, record)?;
     let (result, [lines, details]) = (kept.json(), kept.record.words());
     if let Fitted::Lives(CalibrationCase { case, .. }, _) = fitted {
-        // What the law is of.
+        // What the law is of, and what its test notes for the report.
+        figures["test"] = result["test"].clone();
         figures["plane"] = json!(case.material.plane.name());
         figures["thickness_mm"] = json!(case.specimen.thickness / MM);
     }

@@ -75,7 +75,7 @@ pub fn collect(folder: &SweepFolder, begun: Instant, watcher: &dyn Watcher) -> R
         let others = if warning.cases > 1 { format!(" and {} more", warning.cases - 1) } else { String::new() };
         let elsewhere = warning.largest_in.as_ref().filter(|case| warning.cases > 1 && **case != warning.first);
         let most = warning.largest_percent.zip(elsewhere).map(|(share, case)| format!(" (case {case}: {share:?} %)"));
-        watcher.warn(&format!("case {}{others}: {}{}", warning.first, warning.warning, most.unwrap_or_default()));
+        watcher.warn(&format!("sweep: case {}{others}: {}{}", warning.first, warning.warning, most.unwrap_or_default()));
     }
     let result = serde_json::json!(record);
     let (lines, refusal) = (words(&folder.path, &record), verdict(&record));

@@ -103,8 +103,8 @@ fn quick_methods(case: &mut Case) -> Vec<StressIntensityMethod> {
     if points <= POINTS_QUICK || !case.specimen.is_through() {
         return StressIntensityMethod::ALL.to_vec();
     }
-    case.warnings
-        .push(format!("only the node model was used ({points:.1e} points needed otherwise); use --method ring for points"));
+    let words = format!("only the node model was used ({points:.1e} points needed otherwise); use --method ring for points");
+    case.warnings.push(format!("nodes: {words}"));
     vec![StressIntensityMethod::ElementFreeGalerkin]
 }
 

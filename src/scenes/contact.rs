@@ -387,7 +387,7 @@ pub fn warning(scene: &Scene, net: &Net, bonds: &BondState, pictures: &[Snapshot
         _ => (format!("solver = \"{}\"", scene.model.solver), "solver = \"secant\" supports it"),
     };
     Some(format!(
-        "crack faces overlap near {} by up to {:.3e} mm, {:.2} % of the spacing: {what} has no crack-face contact, so load \
+        "contact: crack faces overlap near {} by up to {:.3e} mm, {:.2} % of the spacing: {what} has no crack-face contact, so load \
          and stress there are those of a crack that closes without force; {remedy}",
         place_mm(at),
         overlap / MM,

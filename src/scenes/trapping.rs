@@ -97,7 +97,7 @@ impl Scene {
         let is_lattice = self.model.arrangement == Discretisation::Lattice;
         if is_lattice && shortest < FULL_RESISTANCE * self.model.spacing {
             lines.push(format!(
-                "a crack of {:.0} spacings grows within -10 to +5 % of the load of its fracture energy; from \
+                "strength: a crack of {:.0} spacings grows within -10 to +5 % of the load of its fracture energy; from \
                  {FULL_RESISTANCE} spacings within 6 %: set model.spacing_mm = {:.4}",
                 shortest / self.model.spacing,
                 1e3 * shortest / FULL_RESISTANCE
@@ -107,7 +107,7 @@ impl Scene {
             && kind.is_stretch_form()
         {
             lines.push(format!(
-                "model.kernel = \"conical\" on {kind}: the load at which a crack grows depends on its direction, by -12 to +20 %; use \"constant\""
+                "strength: model.kernel = \"conical\" on {kind}: the load at which a crack grows depends on its direction, by -12 to +20 %; use \"constant\""
             ));
         }
         lines

@@ -11,15 +11,22 @@ use tempfile::tempdir;
 
 use crate::support::desk::{desk, done, json};
 use crate::support::rows::assert_says;
+use crate::unit::warnings::assert_named;
 
 /// Runs the program in `folder`; stdout and stderr are no terminals.
 pub fn perilife(folder: &Path, arguments: &[&str]) -> Output {
     cargo_bin_cmd!("perilife").current_dir(folder).env_remove("RUST_LOG").args(arguments).output().unwrap()
 }
 
-/// Standard output and standard error as text.
+/// Standard output and standard error as text. Every warning has a name that the guide lists.
+#[track_caller]
 pub fn texts(output: &Output) -> (String, String) {
-    (String::from_utf8(output.stdout.clone()).unwrap(), String::from_utf8(output.stderr.clone()).unwrap())
+    let [stdout, stderr] = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8(bytes.clone()).unwrap());
+    stderr
+        .lines()
+        .filter_map(|line| line.strip_prefix("warning"))
+        .for_each(|line| assert_named(line.trim_start_matches([':', ' '])));
+    (stdout, stderr)
 }
 
 /// The process ended with `code` and, warnings apart, one message on stderr that holds all `words`, without a trace of a panic.

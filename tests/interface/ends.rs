@@ -92,7 +92,7 @@ fn how_lives_end() {
             exit: 0,
             stop: "toughness",
             is_lower_bound: false,
-            words: "% of the life is outside the range of ASTM E647",
+            words: "% of life outside the range of ASTM E647",
         },
     ];
     for ending in endings {

@@ -160,7 +160,7 @@ fn rates_and_sweeps_tell_where_the_formula_does_not_hold() {
     let sweep = "case = \"ct.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"specimen.crack_length_mm\"\nvalues = [9.5, 4.0, 11.0]\n";
     fs::write(here.join("sweep.toml"), sweep).unwrap();
     let (_, stderr) = done(here, &["sweep", "sweep.toml", "--out", "out"]);
-    let line = stderr.lines().find(|line| line.contains("of the life is outside the range of ASTM E647 compact"));
+    let line = stderr.lines().find(|line| line.contains("of life outside the range of ASTM E647 compact"));
     let line = line.unwrap_or_else(|| panic!("{stderr}"));
     assert!(line.contains("and 1 more"), "{line}");
     let figures = json(here.join("out/sweep.json"));

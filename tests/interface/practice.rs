@@ -44,7 +44,13 @@ const ROWS: &[Row] = &[
     row("same_cycles", &["calibrate", "twelve.toml"], 0, &["10.82 to 28.28"], &[(FIT, M, 3.2, 1e-3)]),
     row("same_name", &["calibrate", "case.toml"], 0, &["2 specimens)"], &[(FIT, M, 3.0, 1e-3)]),
     // Understood, and held against the case.
-    row("ratio_column", &["calibrate", "r05.toml"], 0, &["R of the readings"], &[(FIT, C, 3e-8, 2e-3)]),
+    row(
+        "ratio_column",
+        &["calibrate", "r05.toml"],
+        0,
+        &["R = 0.5, the R of the readings"],
+        &[(FIT, C, 3e-8, 2e-3), (FIT, "/test/stress_ratio", 0.5, 1e-9)],
+    ),
     row("ratio_column", &["calibrate", "pmin.toml"], 2, &["Pmin (kN) = 18", "3.6"], &[]),
     row("ratio_column", &["calibrate", "delta_k.toml"], 2, &["Delta K", "by the case"], &[]),
     // Units.

@@ -7,6 +7,7 @@ use tempfile::tempdir;
 use crate::interface::cli::{assert_refused, perilife, texts};
 use crate::support::desk::{done, json};
 use crate::support::fatigue_test::{calibration, lengths, readings};
+use crate::support::rows::assert_says;
 
 /// Writes a test by `row` of cycles and length in mm, read every `step` mm, and its specimen.
 fn folder(step: f64, header: &str, force: impl Fn(f64) -> f64, row: impl Fn(f64, f64) -> String) -> tempfile::TempDir {
@@ -87,6 +88,27 @@ fn loads_of_readings_are_used_and_missed_ones_told() {
     let (_, stderr) = texts(&output);
     assert!(stderr.contains("lab.txt: lines 14 to 15: rate changes"), "{stderr}");
     assert!((law(&output).1 - 3.0).abs() > 0.3);
+}
+
+/// Load and crack length that the specimen does not give are those of the readings.
+#[test]
+fn rates_take_load_and_length_from_the_readings() {
+    let force = |_: f64| 5.4;
+    let with =
+        folder(0.75, "N;a (mm);Pmax (kN);Pmin (kN)", force, |n, a| format!("{n};{a};{};{}", force(a) / 0.9, force(a) / 9.0));
+    let rates = |file: &str| perilife(with.path(), &["rates", "lab.txt", "--specimen", file, "--json"]);
+    let whole = law(&rates("ct.toml"));
+    let text = fs::read_to_string(with.path().join("ct.toml")).unwrap();
+    let (before, loading) = text.split_once("[loading]").unwrap();
+    let rest = loading.split_once("\n[").map_or(String::new(), |(_, rest)| format!("[{rest}"));
+    let kept = format!("{before}{rest}").replace("crack_length_mm", "# crack_length_mm");
+    let bare = kept.lines().filter(|line| !line.starts_with("# crack")).map(|line| format!("{line}\n")).collect::<String>();
+    assert!(!bare.contains("crack_length_mm =") && !bare.contains("force_"), "{bare}");
+    fs::write(with.path().join("bare.toml"), bare).unwrap();
+    let output = rates("bare.toml");
+    assert_says(&texts(&output).1, &["loading: force_max_kn = 6", "initial crack length: "]);
+    let (c, m) = law(&output);
+    assert!((m / whole.1 - 1.0).abs() < 1e-9 && (c / whole.0 - 1.0).abs() < 1e-6, "{c:e} {m} {whole:?}");
 }
 
 #[test]

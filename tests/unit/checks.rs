@@ -317,3 +317,22 @@ fn a_short_crack_at_a_rim_is_not_called_a_ligament() {
     assert!((told["first"]["ligament_mm"].as_f64().unwrap() - 13.5).abs() < 5e-3, "{told}");
     assert!(told["first"]["over_crack"].as_f64().unwrap() > told["first"]["over_ligament"].as_f64().unwrap());
 }
+
+/// C and m of 2024-T3 in mm/cycle and MPa√m, and the same law in in/cycle and ksi√in under the keys in mm.
+#[test]
+fn constants_in_inches_under_keys_in_mm_are_told() {
+    let of = |name: &str, c: f64| {
+        let set = [format!("material.name=\"{name}\""), format!("fatigue.paris_c_mm_per_cycle={c}")];
+        of_case(&hand_case(PANEL, &[&set[0], &set[1]])).into_iter().find(|check| check.name == "units_of_c")
+    };
+    let metric: f64 = 8.95422e-8;
+    let inch = metric / 25.4 * 1.098_843_4_f64.powf(2.874);
+    let told = of("al2024-t3", inch).unwrap();
+    assert_eq!((told.verdict, told.side), (Verdict::Caution, Some(Side::NonConservative)));
+    assert!(told.words.contains("as entered") && told.words.contains("if C is of in/cycle and ksi√in"), "{told:?}");
+    // The life is by this factor too long.
+    assert!((told.effect_percent.unwrap() / 100.0 + 1.0 - metric / inch).abs() < 1e-6, "{told:?}");
+    for (name, c) in [("al2024-t3", metric), ("al2024-t3", metric / 2.0), ("al2024-t3", metric / 1000.0), ("q345", inch)] {
+        assert_eq!(of(name, c), None, "{name} {c}");
+    }
+}

@@ -114,7 +114,7 @@ fn one_odd_reading_does_not_make_the_error() {
         println!("{criterion}: p ± {} without, {} with it", plain.p_error(), with_odd.p_error());
         assert!((0.7..1.4).contains(&ratio), "{criterion}: {ratio}");
         assert!(
-            with_odd.warnings.iter().any(|text| text.starts_with("1 of ") && text.contains("0.25 mm")),
+            with_odd.warnings.iter().any(|text| text.starts_with("readings: 1 of ") && text.contains("0.25 mm")),
             "{:?}",
             with_odd.warnings
         );

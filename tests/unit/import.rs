@@ -398,3 +398,21 @@ fn what_a_table_says_against_its_columns_is_told() {
         assert!(told.contains(&format!("or a model): {name}")), "{told}");
     }
 }
+
+#[test]
+fn orientation_and_environment_above_a_table_are_noted() {
+    let noted = |above: &str| {
+        let measured = read(&format!("{above}\n{}", table("N;a (mm)", "{n};{a}")), &plain()).unwrap();
+        let [orientation, environment] = measured.curves[0].source.noted.clone();
+        (orientation.unwrap_or_default(), environment.unwrap_or_default())
+    };
+    let cases = [
+        ("Material: 7075-T651, L-T, t = 6 mm\nEnvironment: lab air, 23 °C\nMachine: 100 kN", "L-T", "lab air, 23 °C"),
+        ("# orientation T-L\n# Test temperature = 22 C\n# laboratory air", "T-L", "22 C, laboratory air"),
+        ("Specimen 7;repair 3\nW = 50 mm", "", ""),
+        ("Humidity: 45 % RH", "", "Humidity: 45 % RH"),
+    ];
+    for (above, orientation, environment) in cases {
+        assert_eq!(noted(above), (orientation.to_owned(), environment.to_owned()), "{above}");
+    }
+}

@@ -282,6 +282,22 @@ fn the_way_of_a_tip_is_marked_by_shares_of_the_life() {
     }
 }
 
+/// The words of a load on a pin stand above the plate, not across its outline.
+#[test]
+fn words_of_a_pin_stand_above_the_plate() {
+    let (mut plate, tables) = straight_growth();
+    plate.outline_mm = vec![[-50.0, -30.0], [10.0, -30.0], [10.0, 30.0], [-50.0, 30.0]];
+    plate.holes = vec![HoleDrawn { x_mm: -20.0, y_mm: 15.0, diameter_mm: 10.0 }];
+    plate.loads = vec![LoadDrawn { from_mm: [-20.0, 15.0], to_mm: [-20.0, 15.0], direction: [0.0, 1.0], shares: [1.0; 2] }];
+    let svg = plate_svg(&plate, &tables, SIZE);
+    let outline = svg.split("<polygon points=\"").nth(1).unwrap().split('"').next().unwrap();
+    let top =
+        outline.split(' ').map(|pair| pair.split(',').nth(1).unwrap().parse::<f64>().unwrap()).fold(f64::INFINITY, f64::min);
+    let words = svg.split("<text").skip(1).find(|part| part.contains("stress 5 to 50")).unwrap();
+    let y: f64 = words.split(" y=\"").nth(1).unwrap().split('"').next().unwrap().parse().unwrap();
+    assert!(y < top && y > 10.0, "words at {y}, plate from {top}");
+}
+
 #[test]
 fn a_small_crack_gets_a_picture_of_its_own() {
     let (plate, mut tables) = straight_growth();

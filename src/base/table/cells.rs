@@ -112,7 +112,7 @@ impl Table {
     pub fn warnings(&self) -> Vec<String> {
         let line = |[first, last]: [usize; 2]| {
             let lines = if first == last { format!("line {first}") } else { format!("lines {first} to {last}") };
-            format!("{}: {lines}: text after the readings ignored", self.file.display())
+            format!("table: {}: {lines}: text after the readings ignored", self.file.display())
         };
         self.footer.map(line).into_iter().chain(self.notes.iter().cloned()).collect()
     }
@@ -129,7 +129,7 @@ impl Table {
         let shown: Vec<String> = lines.iter().take(LINES_SHOWN).map(usize::to_string).collect();
         let more = if out > LINES_SHOWN { ", ..." } else { "" };
         let lines = format!("line{} {}{more}", if out == 1 { "" } else { "s" }, shown.join(", "));
-        self.notes.push(format!("{}: {out} of {all} rows excluded: {why} ({lines}); {remedy}", self.file.display()));
+        self.notes.push(format!("table: {}: {out} of {all} rows excluded: {why} ({lines}); {remedy}", self.file.display()));
         self.rows.retain(|row| !is_out(row));
         Ok(())
     }

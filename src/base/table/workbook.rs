@@ -67,7 +67,7 @@ fn without_hidden(mut table: Table, bytes: &[u8], sheet: &str) -> Result<Table> 
     let names = hidden.columns.iter().filter_map(|column| table.header.get(*column)).filter(|name| !name.is_empty());
     let names: Vec<&str> = names.map(String::as_str).collect();
     if !names.is_empty() {
-        let note = format!("{}: hidden columns are used: {}", table.file.display(), names.join(", "));
+        let note = format!("table: {}: hidden columns are used: {}", table.file.display(), names.join(", "));
         table.notes.push(note);
     }
     table.leave_out("hidden in the workbook", "unhide them to read them", |row| hidden.rows.contains(&row.line))?;

@@ -209,7 +209,7 @@ impl Smooth {
         let misses = format!("rms {bend:.3} in ln da/dN, {scatter:.3} for a smooth curve per test");
         let remedy = "growth_law = \"table\" with growth_table uses the rates directly";
         (!known.is_empty() && bend > (RMS_FACTOR * scatter).max(BEND_MIN))
-            .then(|| format!("law {} misses the shape of the data: {misses}; {remedy}", law.kind))
+            .then(|| format!("law: {} misses the shape of the data: {misses}; {remedy}", law.kind))
     }
 }
 
@@ -231,27 +231,27 @@ fn about_polynomial(x: &[f64], y: &[f64]) -> Vec<f64> {
 
 fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
     let law = fits.law();
-    let without = |of: &str| format!("law {}: fitted without its {of} factor, not identifiable from these rates", law.kind);
+    let without = |of: &str| format!("law: {} fitted without its {of} factor, not identifiable from these rates", law.kind);
     let mut lines: Vec<String> = law.lacks.map(without).into_iter().collect();
     let of_test = |test: &[RateRow]| {
         let rates = test.iter().map(|row| (row.delta_k / MPA_SQRT_M, row.rate / MM_PER_CYCLE));
-        threshold(rates).map(|(_, words)| format!("{}: {words}", test[0].series))
+        threshold(rates).map(|(_, words)| format!("threshold: {}: {words}", test[0].series))
     };
     lines.extend(rows.chunk_by(|a, b| a.series == b.series).filter_map(of_test));
     if let Some((kind, margin)) = fits.margin.filter(|(_, margin)| *margin < -WORSE) {
-        lines.push(format!("law {} is not the best: {kind} is better by {:.1} in AICc", law.kind, -margin));
+        lines.push(format!("law: {} is not the best: {kind} is better by {:.1} in AICc", law.kind, -margin));
     }
     if fits.effective_rates < 0.9 * rows.len() as f64 {
         let (count, weight) = (rows.len(), fits.effective_rates);
-        lines.push(format!("neighboring rates are correlated (seven-point polynomial): {count} rates weigh as {weight:.0}"));
+        lines.push(format!("rates: neighbors are correlated (seven-point polynomial): {count} rates weigh as {weight:.0}"));
     }
     let far: Vec<String> = (rows.iter().zip(&law.residuals))
         .filter(|(_, residual)| residual.abs() > FACTOR.ln())
-        .map(|(row, residual)| format!("{}: the rate is {:.2} times that of the law {}", row.place, residual.exp(), law.kind))
+        .map(|(row, residual)| format!("rates: {}: {:.2} times the rate of the law {}", row.place, residual.exp(), law.kind))
         .collect();
     lines.extend(far.iter().take(NAMED).cloned());
     if far.len() > NAMED {
-        lines.push(format!("{} more rates are off by more than a factor of {FACTOR}", far.len() - NAMED));
+        lines.push(format!("rates: {} more are off by more than a factor of {FACTOR}", far.len() - NAMED));
     }
     lines
 }

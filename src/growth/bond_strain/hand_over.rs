@@ -43,7 +43,7 @@ impl BondStrain<'_> {
     pub(super) fn why_no_tips(&self) -> Option<String> {
         (self.case.engine() == Engine::BondsThenPoints).then(|| {
             format!(
-                "some cracks from slots stayed shorter than {HAND_OVER_HORIZONS} horizons, so K never set their rate: the whole life is by bond \
+                "bonds: some cracks from slots stayed shorter than {HAND_OVER_HORIZONS} horizons, so K never set their rate: the whole life is by bond \
                  strains, which depend on lattice and horizon"
             )
         })
@@ -53,7 +53,7 @@ impl BondStrain<'_> {
 /// What the user should know of the row at which K takes over.
 pub fn note(row: &CurvePoint) -> String {
     format!(
-        "cracks initiated at slots by bond failure; from {:.0} cycles (a = {:.3} mm) growth is driven by K",
+        "hand-over: cracks initiated at slots by bond failure; from {:.0} cycles (a = {:.3} mm) growth is driven by K",
         row.cycles,
         row.crack_length / MM
     )

@@ -111,13 +111,13 @@ impl GrowthHistory {
         let flaw = case.specimen.smallest_flaw();
         if case.engine() == Engine::Bonds && flaw < SHORT_CRACK_HORIZONS * body.horizon() {
             warnings.push(format!(
-                "the initial crack is only {:.1} horizons long: it grows too fast at first (a model artifact, not a short-crack effect; \
+                "bonds: the initial crack is only {:.1} horizons long: it grows too fast at first (a model artifact, not a short-crack effect; \
                  fatigue.driver = \"tip_field\" avoids it)",
                 flaw / body.horizon()
             ));
         }
         if self.past.longest > self.limit + body.horizon() {
-            let words = "bonds broke all around the tips: the path near the end is not reliable; use the life, not the length \
+            let words = "bonds: bonds broke all around the tips: the path near the end is not reliable; use the life, not the length \
                          (fatigue.ageing = \"crack_tip\" keeps breaks at the tips)";
             warnings.push(words.to_owned());
         }
@@ -130,7 +130,7 @@ impl GrowthHistory {
             })
         });
         if stopped_in_grip {
-            warnings.push("a crack tip is in the zone around a load or support, where bonds do not fail".to_owned());
+            warnings.push("bonds: a crack tip is in the zone around a load or support, where bonds do not fail".to_owned());
         }
         warnings
     }

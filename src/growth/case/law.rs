@@ -145,7 +145,7 @@ pub(super) fn record_lines(case: &Case, record: &FittedRecord) -> Result<Vec<Str
     if bonds && (case.points().horizon_ratio - record.horizon_ratio).abs() > 1e-9 {
         let (given, recorded) = (case.points().horizon_ratio, record.horizon_ratio);
         lines.push(format!(
-            "horizon_ratio {given} is used with a law fitted at {recorded}; the transfer between them is not validated"
+            "law: horizon_ratio {given} is used with a law fitted at {recorded}; the transfer between them is not validated"
         ));
     }
     if case.model.method() == Method::Peridynamics {
@@ -166,7 +166,7 @@ fn material_line(material: &Material, record: &FittedRecord, bonds: bool) -> Res
     let factor = (material.plane_modulus() / recorded_modulus(record)?).powf(record.p);
     let bonds = if bonds { format!(", A times (E'2/E'1)^p = {factor:.4}") } else { String::new() };
     Ok(Some(format!(
-        "growth law of {} (E {} GPa, ν {}, plane {}) used at E {e} GPa, ν {nu}, plane {}: da/dN at equal ΔK is kept{bonds}",
+        "law: growth law of {} (E {} GPa, ν {}, plane {}) used at E {e} GPa, ν {nu}, plane {}: da/dN at equal ΔK is kept{bonds}",
         record.material, record.youngs_modulus_gpa, record.poisson_ratio, record.plane, material.plane
     )))
 }

@@ -11,7 +11,7 @@ use crate::case::record::{FittedRecord, LawRecord};
 use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::input::{Document, Folder, slice, value_at};
 use perilife_base::units::{MM, MPA_SQRT_M};
-use perilife_laws::growth_law::description::{Constant, GAMMA, Given, K_C, RatedRow, Rates, keys_of_laws, law_keys};
+use perilife_laws::growth_law::description::{Constant, GAMMA, Given, K_C, LIBRARY, RatedRow, Rates, keys_of_laws, law_keys};
 use perilife_laws::growth_law::nasgro::keys_of;
 use perilife_laws::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind, Walker, bonds, paris};
 use perilife_laws::paris::ParisLaw;
@@ -19,9 +19,6 @@ use perilife_laws::{FatigueLaw, STEADY_EXPONENTS, unsteady};
 use perilife_measured::RateFile;
 use perilife_plate::loading::SAME_RATIO;
 use perilife_plate::material::{Material, Plane, growth_data, library};
-
-/// The growth law that stands with its material.
-pub const LIBRARY: &str = "library";
 
 /// The law of the case, of the kind that is asked for or else whose constants are given; `None` where the file gives none at all,
 /// as in a calibration. `hands_over` says of bonds whether they hand their crack over to its K.
@@ -165,7 +162,7 @@ pub(super) fn expanded(fatigue: &Value, folder: &Folder) -> Result<Option<(Value
 /// `[fatigue]` with the growth law of the material it asks for by `growth_law = "library"`, and what that is; `None` where it does not.
 /// Errors: a material that has none, or a second law.
 pub(super) fn of_library(fatigue: &Value, material: &Value, thickness: f64, folder: &Folder) -> Result<Option<(Value, String)>> {
-    if value_at(fatigue, "growth_law").and_then(Value::as_str) != Some(LIBRARY) {
+    if value_at(fatigue, "growth_law").and_then(Value::as_str) != Some(LIBRARY.name) {
         return Ok(None);
     }
     const REMEDY: &str = "set material.name to an entry of `perilife list materials`, or to your own file with [growth]";
@@ -246,5 +243,5 @@ pub(crate) fn ratio_line(record: &LawRecord, ratio: f64, key: &str) -> Result<Op
         let remedy = format!("fit {before} or {last} to rates at several ratios");
         return Err(input(key, ratio, problem, remedy));
     }
-    Ok(Some(format!("law {} fitted for R = {low} to {high}, used at R = {ratio}", record.kind())))
+    Ok(Some(format!("law: {} fitted for R = {low} to {high}, used at R = {ratio}", record.kind())))
 }

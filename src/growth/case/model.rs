@@ -122,7 +122,7 @@ fn tiny_flaw(specimen: &Specimen) -> Option<String> {
     let (flaw, width) = (specimen.smallest_flaw(), specimen.gross_width);
     (flaw < TINY * width).then(|| {
         format!(
-            "a flaw of {} mm in a plate of {} mm: model.method = \"element_free_galerkin\" refines only around it and is faster",
+            "spacing: a flaw of {} mm in a plate of {} mm: model.method = \"element_free_galerkin\" refines only around it and is faster",
             round_mm(flaw),
             round_mm(width)
         )

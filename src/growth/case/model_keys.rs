@@ -114,7 +114,7 @@ pub(super) fn too_fine(spacing: f64, specimen: &Specimen, settings: &ElementFree
     let nodes = specimen.area() / settings.resolution.far.powi(2);
     (nodes > NODES_USUAL).then(|| {
         format!(
-            "model.spacing_mm = {} gives about {nodes:.0} nodes far from cracks: nodes refine automatically at tips, edges \
+            "spacing: model.spacing_mm = {} gives about {nodes:.0} nodes far from cracks: nodes refine automatically at tips, edges \
              and ligaments; remove the key",
             round_mm(spacing)
         )

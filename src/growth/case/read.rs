@@ -183,7 +183,7 @@ impl Case {
             return Err(input("loading.kind", "\"spectrum\"", problem, remedy));
         }
         residual::check(&case)?;
-        case.warnings.extend(boundaries::first_load_warning(&case));
+        case.warnings.extend(boundaries::first_load_warning(&case).map(|line| format!("first load: {line}")));
         let lines = law_lines(&case)?;
         case.warnings.extend(lines);
         case.provenance = folder.opened().so_far();
@@ -311,7 +311,7 @@ fn check_load(case: &Case) -> Result<()> {
 
 /// Warnings of law and horizon of this case.
 fn law_lines(case: &Case) -> Result<Vec<String>> {
-    let mut lines: Vec<String> = Vec::new();
+    let (mut lines, units): (Vec<String>, _) = (Vec::new(), |line: String| format!("units: {line}"));
     // Of a spectrum the cycles count by their share of the growth (`predict::fit_use`).
     match (&case.loading.spectrum, &case.law_record) {
         (Some(spectrum), _) => lines.extend(spectrum.notes.iter().cloned()),
@@ -320,19 +320,19 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
     }
     match &case.law {
         LawSource::Inline(_) => lines.extend(inline_line(case)),
-        LawSource::Paris(law) => lines.extend(doubt(&steady(*law), case.loading.ratio)),
+        LawSource::Paris(law) => lines.extend(doubt(&steady(*law), case.loading.ratio).map(units)),
         LawSource::Factor(law) => {
-            lines.extend(doubt(&FactorLaw { threshold: 0.0, ..law.clone() }, case.loading.ratio));
+            lines.extend(doubt(&FactorLaw { threshold: 0.0, ..law.clone() }, case.loading.ratio).map(units));
             lines.extend(law.table.iter().flat_map(|table| table.lines(case.loading.ratios())));
         }
         LawSource::Fitted(record) => {
             let law = ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE, m: record.paris_m };
-            lines.extend(doubt(&steady(law), record.stress_ratio));
+            lines.extend(doubt(&steady(law), record.stress_ratio).map(units));
             lines.extend(law::record_lines(case, record)?);
         }
         LawSource::Missing(path) if path.as_os_str().is_empty() => {}
         LawSource::Missing(path) => {
-            lines.push(format!("{} does not exist yet: write it with `perilife calibrate` before predicting", path.display()));
+            lines.push(format!("law: {} does not exist yet: write it with `perilife calibrate`", path.display()));
         }
     }
     lines.extend(compression_line(case));
@@ -355,7 +355,7 @@ fn compression_line(case: &Case) -> Option<String> {
     let [ratio, _] = case.loading.ratios();
     (ratio < 0.0 && !counts).then(|| {
         format!(
-            "R = {}: the compressive part of the cycle is ignored (treated as R = 0, non-conservative); growth_law = \"{law}\" includes it",
+            "loading: R = {}: the compressive part of the cycle is ignored (treated as R = 0, non-conservative); growth_law = \"{law}\" includes it",
             (1e4 * ratio).round() / 1e4
         )
     })
@@ -376,7 +376,7 @@ fn inline_line(case: &Case) -> Option<String> {
         choices.zone_radius_horizons.filter(|radius| *radius != 0.5).map(|radius| format!("zone_radius_horizons {radius}")),
     );
     let list = other.join(", ");
-    (!other.is_empty()).then(|| format!("constants a, p apply to the default bond law, kernel and zone; used here with {list}"))
+    (!other.is_empty()).then(|| format!("law: a, p apply to the default bond law, kernel and zone; used here with {list}"))
 }
 
 /// Below three spacings a point has too few neighbours for rates that do not depend on their number. Measured (middle tension,

@@ -62,7 +62,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let is_reversed = |tip: &Tip| tip.response.at(1.0) < 1.0 - 1e-9 && tip.equivalent() > 0.0;
         let tips = self.state.tips.iter().enumerate().filter(|(_, tip)| is_reversed(tip));
         let tips = tips.map(|(index, _)| index.to_string()).collect::<Vec<_>>().join(", ");
-        (!tips.is_empty()).then(|| format!("tip {tips}: K_eq is largest at a lower load; K is that of this load"))
+        (!tips.is_empty()).then(|| format!("contact: tip {tips}: K_eq is largest at a lower load; K is that of this load"))
     }
 
     /// Warning of tips that the load closes.
@@ -70,7 +70,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let closed = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.was_closed);
         let tips = closed.map(|(index, _)| index.to_string()).collect::<Vec<_>>().join(", ");
         (!tips.is_empty())
-            .then(|| format!("tip {tips} is closed by the load and does not grow; crack faces are in frictionless contact"))
+            .then(|| format!("contact: tip {tips} is closed by the load and does not grow; crack faces touch without friction"))
     }
 }
 

@@ -46,7 +46,7 @@ pub fn note(row: &CurvePoint) -> String {
     let CurvePoint { cycles, crack_length, .. } = row;
     let length = crack_length / MM;
     format!(
-        "breakthrough after {cycles:.0} cycles at c = {length:.3} mm; then a straight through crack of that length (K from nodes)"
+        "breakthrough: after {cycles:.0} cycles at c = {length:.3} mm; then a straight through crack of that length (K from nodes)"
     )
 }
 
@@ -212,7 +212,7 @@ impl PartThroughGrowth<'_> {
         let Fronts { case, flaw, .. } = &self.fronts;
         let is_through = self.curve.last().is_some_and(|row| self.place(row).axes[0] >= flaw.through_depth());
         (is_through && flaw.bending_ratio != 0.0 && !case.stop.at_break_through).then(|| {
-            "the run ends at break-through: K of a through crack under bending out of the plane of the plate is not computed"
+            "breakthrough: the run ends at break-through: K of a through crack under bending out of the plane of the plate is not computed"
                 .to_owned()
         })
     }

@@ -48,7 +48,7 @@ impl PointPlate {
         });
         let words = |count: usize| {
             format!(
-                "{count} of {} crack tips are within {:.3} mm of another tip or a support: the integration ring is too small there; K may be \
+                "points: {count} of {} crack tips are within {:.3} mm of another tip or a support: the integration ring is too small there; K may be \
                  off by a few percent; reduce model.spacing_mm",
                 ends.len(),
                 (RING_HORIZONS_MIN + 0.2) * horizon / MM
@@ -59,7 +59,7 @@ impl PointPlate {
         let nearest = ends.iter().map(gap).enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
         let near_rim = nearest.filter(|(_, gap)| *gap < RIM_HORIZONS * horizon).map(|(tip, gap)| {
             format!(
-                "tip {tip} starts {:.3} mm ({:.2} horizons) from an edge; K may be off by a few percent there; use model.spacing_mm = {:.4}",
+                "points: tip {tip} starts {:.3} mm ({:.2} horizons) from an edge; K may be off by a few percent there; use model.spacing_mm = {:.4}",
                 gap / MM,
                 gap / horizon,
                 gap / (RIM_HORIZONS * case.points().horizon_ratio) / MM

@@ -14,7 +14,7 @@ const CONTACT_SOLVES_MOST: usize = 20;
 /// Overlap of flanks, in spacings times the mean strain of the plate, that is round-off.
 const CONTACT_LEAST: f64 = 1e-3;
 /// What is said where the least displacement may open what the largest presses shut.
-const REVERSED: &str = "points: growth of crack faces that the minimum displacement opens is not computed (non-conservative); \
+const REVERSED: &str = "contact: growth of crack faces that the minimum displacement opens is not computed (non-conservative); \
                         use model.method = \"element_free_galerkin\"";
 
 /// A plate of points under a load below the largest.

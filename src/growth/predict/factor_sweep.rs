@@ -166,7 +166,7 @@ fn by_formula(case: &Case, lengths: &[f64], warnings: &mut Vec<String>) -> Resul
     let outside = lengths.iter().filter(|length| !formula.holds_at(**length)).count();
     if outside > 0 {
         warnings.push(format!(
-            "{outside} of {} lengths lie outside the range of {} ({})",
+            "formula range: {outside} of {} lengths lie outside the range of {} ({})",
             lengths.len(),
             formula.name,
             formula.range
@@ -274,7 +274,7 @@ fn unlike(rows: &[SweepRow], tips: usize, lead: usize) -> Option<String> {
     };
     rows.chunks(tips).any(differs).then(|| {
         format!(
-            "tips have different K: grown with m = {EXPONENT_USUAL}; the table holds β of tip {lead}, and a life from it grows all tips equally"
+            "tips: tips have different K: grown with m = {EXPONENT_USUAL}; the table holds β of tip {lead}, and a life from it grows all tips equally"
         )
     })
 }

@@ -36,7 +36,7 @@ pub fn of_other_ratios(case: &Case, prediction: &Prediction) -> Option<String> {
     let law = law_of_cycle(case).ok()?;
     let of_table = |acting: &Acting, _| if law.beyond_ratio(acting.ratio).is_some() { 1.0 } else { 0.0 };
     let share = life_share(case, &prediction.curve, &of_table).filter(|share| *share > NAMED)?;
-    Some(format!("{:.1} % of the growth is by cycles at stress ratios outside those of the law", 100.0 * share))
+    Some(format!("law: {:.1} % of the growth is by cycles at stress ratios outside those of the law", 100.0 * share))
 }
 
 /// The fitted law in words: rate at the reference ΔK and m with their errors; `None` for constants given without errors.

@@ -91,7 +91,7 @@ impl PhaseOne {
         let mut words = vec![match self.cycles {
             Some(_) => "initiation: life from the given S-N curve; its scatter is in neither the band nor the error".to_owned(),
             None => format!(
-                "no initiation: local stress range {:.1} MPa ≤ fatigue.initiation.limit_mpa = {:.1} MPa",
+                "initiation: none, local stress range {:.1} MPa ≤ fatigue.initiation.limit_mpa = {:.1} MPa",
                 self.range / MPA,
                 limit / MPA
             ),

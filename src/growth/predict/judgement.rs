@@ -23,14 +23,14 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
     };
     match prediction.stop {
         StopReason::NoConvergence if grown => {
-            warnings.push("the solver did not converge; the curve ends at the last converged increment".to_owned());
+            warnings.push("stopped: the solver did not converge; the curve ends at the last converged increment".to_owned());
         }
         StopReason::NoConvergence => {
             return no_curve("the solver did not converge", "use another model.spacing_mm");
         }
         StopReason::NoGrowth if grown => {
             warnings.push(format!(
-                "bonds kept breaking but no crack tip advanced in the last {BLOCKS_WITHOUT_GROWTH} increments: the curve ends at the last \
+                "stopped: bonds kept breaking but no crack tip advanced in the last {BLOCKS_WITHOUT_GROWTH} increments: the curve ends at the last \
                  advance; use fatigue.driver = \"tip_field\", or another model.spacing_mm"
             ));
         }
@@ -65,7 +65,7 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
 fn hardly_loaded(prediction: &Prediction) -> Option<String> {
     let most = prediction.curve.iter().map(|row| row.delta_k).fold(0.0, f64::max) / MPA_SQRT_M;
     let words = "is below the threshold of any metal: check the units of load, thickness and crack length";
-    (0.0 < most && most < 0.5).then(|| format!("ΔK up to {most:.3} MPa√m {words}"))
+    (0.0 < most && most < 0.5).then(|| format!("units: ΔK up to {most:.3} MPa√m {words}"))
 }
 
 /// Warning of the life beyond the table of the load, under its last row.
@@ -75,7 +75,7 @@ fn beyond_load(case: &Case, prediction: &Prediction) -> Option<String> {
     let share = 100.0 * (last.cycles - rows.first()?.cycles) / last.cycles;
     let [end, reached] = [course.end(), last.crack_length].map(|length| length / MM);
     Some(format!(
-        "{}: the table ends at a = {end:.3} mm; growth to {reached:.3} mm under its last load ({share:.2} % of life); add rows, or set \
+        "loading: {} ends at a = {end:.3} mm; growth to {reached:.3} mm under its last load ({share:.2} % of life); add rows, or set \
          stop.crack_length_mm = {end:.3}",
         course.key
     ))

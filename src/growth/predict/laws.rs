@@ -68,7 +68,7 @@ pub fn beyond_warning(case: &Case, law: &dyn GrowthLaw, curve: &[CurvePoint]) ->
         curve.windows(2).zip(shares.windows(2)).map(|(pair, ends)| of(ends) * (pair[1].cycles - pair[0].cycles)).sum();
     (cycles > 0.0).then(|| {
         let share = 100.0 * cycles / life;
-        format!("{share:.2} % of the life is at ΔK beyond the table of rates, by the rate at its end")
+        format!("rates: {share:.2} % of the life is at ΔK beyond the table of rates, by the rate at its end")
     })
 }
 

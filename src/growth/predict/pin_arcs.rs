@@ -40,7 +40,7 @@ pub fn line(case: &Case) -> Option<String> {
         _ => "specimen.pin_diameter_mm or specimen.pin_half_angle_deg",
     };
     Some(format!(
-        "pin contact assumed over ±{:.0}° ({fits}); effect on K at N = 0: {}; set {key}",
+        "pins: pin contact assumed over ±{:.0}° ({fits}); effect on K at N = 0: {}; set {key}",
         usual.to_degrees(),
         told.collect::<Vec<_>>().join(", ")
     ))

@@ -167,7 +167,7 @@ pub fn plane_warning(case: &Case, curve: &[CurvePoint]) -> Option<String> {
     let (_, [needed, _]) = other_plane(case, curve).filter(|(asked, _)| *asked == Plane::Stress && !is_told)?;
     let [needed, thickness] = [needed, case.specimen.thickness].map(|length| length / MM);
     Some(format!(
-        "material.plane = \"strain\", but plane strain at the tip needs a thickness of {needed:.2} mm from the start \
+        "plane: material.plane = \"strain\", but plane strain at the tip needs a thickness of {needed:.2} mm from the start \
          (2.5 (K_max/yield)², ASTM E399); the plate has {thickness:.2} mm"
     ))
 }

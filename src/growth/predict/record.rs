@@ -210,7 +210,7 @@ fn unstable_path(curve: &[CurvePoint]) -> Option<String> {
     };
     (0..tips).find_map(unstable).map(|(tip, k_i, t_stress)| {
         format!(
-            "tip {tip} grows straight at T = {:.1} MPa and K_I = {:.2} MPa√m, where a straight path is unstable (T > 0): the crack may turn to \
+            "path: tip {tip} grows straight at T = {:.1} MPa and K_I = {:.2} MPa√m, where a straight path is unstable (T > 0): the crack may turn to \
              either side, in a test as well",
             t_stress / MPA,
             k_i / MPA_SQRT_M

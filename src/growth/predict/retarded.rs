@@ -109,7 +109,7 @@ pub(super) fn other_zones(case: &Case, curve: &[CurvePoint], own: &Recounted, en
     });
     let [thickness, first, last] = [case.specimen.thickness, first, last].map(|size| size / MM);
     Some(format!(
-        "retardation: plastic zones of plane {}, but the plate of {thickness:.2} mm is {sense} than plane strain at the tip needs, \
+        "plane: retardation uses plastic zones of plane {}, but the plate of {thickness:.2} mm is {sense} than plane strain at the tip needs, \
          {first:.2} mm at the start and {last:.2} mm at the end (2.5 (K_max/yield)², ASTM E399){lives}; set material.plane = \"{plane}\"",
         case.material.plane
     ))
@@ -129,7 +129,7 @@ fn recounted(mut curve: Vec<CurvePoint>, stop: StopReason, of_front: usize) -> R
         first.growth_rate = second.growth_rate;
     }
     let warning = unlike(&curve[of_front..])
-        .then(|| "retardation is computed for the fastest tip only; the others keep their share of its growth".to_owned());
+        .then(|| "tips: retardation is computed for the fastest tip only; the others keep their share of its growth".to_owned());
     Recounted { curve, stop, warning }
 }
 

@@ -65,7 +65,7 @@ pub(super) fn beside_nodes(case: &Case, own: &[TipRecord]) -> Option<String> {
     (share > BESIDE_NODES).then(|| {
         let [[k_i, k_ii], [of_nodes_i, of_nodes_ii]] = [own[tip], nodes[tip]].map(|factors| factors.map(|k| k / MPA_SQRT_M));
         format!(
-            "K of tip {tip} differs by {:.1} % from the node model ({k_i:.3} and {k_ii:.3} against {of_nodes_i:.3} and {of_nodes_ii:.3} MPa√m); \
+            "points: K of tip {tip} differs by {:.1} % from the node model ({k_i:.3} and {k_ii:.3} against {of_nodes_i:.3} and {of_nodes_ii:.3} MPa√m); \
              reduce model.spacing_mm, or use model.method = \"element_free_galerkin\"",
             100.0 * share
         )

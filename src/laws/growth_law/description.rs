@@ -5,7 +5,8 @@ use toml::Value;
 use super::{FactorLaw, GrowthLawKind};
 use perilife_base::error::{Result, input_missing};
 use perilife_base::input::{Folder, INTENSITY, Quantity, number, value_at};
-use perilife_base::keys::{Field, Key};
+use perilife_base::keys::{Field, Key, Shape};
+use perilife_base::kinds::KindLine;
 use perilife_base::units::MM_PER_CYCLE;
 use perilife_plate::material::Material;
 
@@ -259,10 +260,19 @@ pub fn keys_of_laws() -> Vec<(Vec<&'static str>, Vec<GrowthLawKind>)> {
     groups
 }
 
+/// The growth law that stands with its material, which takes the place of this name before a law is read.
+pub const LIBRARY: KindLine = KindLine { key: GrowthLawKind::KEY, name: "library", meaning: "growth data of material.name" };
+
+/// Names of `growth_law`.
+pub fn choices() -> Vec<KindLine> {
+    GrowthLawKind::lines().into_iter().chain([LIBRARY]).collect()
+}
+
 /// Keys of `[fatigue]` that give a law, for whoever tells of them.
 pub fn keys_to_tell() -> Vec<Key> {
     let fitted = Key::of_choice::<String>("fitted", "Fitted law: file that `perilife calibrate` wrote");
-    let mut keys = vec![fitted, Key::of_choice::<GrowthLawKind>("growth_law", "Growth law: default by the constants given")];
+    let law = Key::of_choice::<GrowthLawKind>("growth_law", "Growth law: default by the constants given");
+    let mut keys = vec![fitted, Key { shape: Shape::Choice(choices), ..law }];
     for constant in GrowthLawKind::all().flat_map(|kind| kind.0.constants) {
         if keys.iter().all(|key| key.name != constant.key) {
             keys.push(Key::of_constant(constant.key, constant.quantity, ""));

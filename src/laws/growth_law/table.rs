@@ -170,10 +170,10 @@ impl Table {
     pub fn lines(&self, ratios: [f64; 2]) -> Vec<String> {
         let unsaid = (!self.says_ratio).then(|| {
             let remedy = "give it in a column stress_ratio or by growth_table = { file = \"...\", stress_ratio = ... }";
-            format!("the table of rates has no stress ratio: its rates are used at R = {} unchanged; {remedy}", ratios[1])
+            format!("rates: the table of rates has no stress ratio: its rates are used at R = {} unchanged; {remedy}", ratios[1])
         });
         let mut lines: Vec<String> = self.notes.iter().cloned().chain(unsaid).collect();
-        lines.extend(ratios.iter().filter_map(|ratio| self.beyond_ratio(*ratio)));
+        lines.extend(ratios.iter().filter_map(|ratio| Some(format!("rates: {}", self.beyond_ratio(*ratio)?))));
         lines.dedup();
         lines
     }
@@ -260,7 +260,7 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
         let squares: f64 = pairs.iter().map(|[k, rate]| (rate.ln() - log_rate(&band, 0.0, k.ln())).powi(2)).sum();
         let rms = (squares / count as f64).sqrt();
         let used = format!("rising curve of {points} points used, rms of {count} rates {rms:.3} in ln(da/dN)");
-        notes.push(format!("{}: rates at R = {ratio} scatter; {used}", rates.file));
+        notes.push(format!("rates: {}: those at R = {ratio} scatter; {used}", rates.file));
         curves.push(curve);
     }
     fail_if!(curves.is_empty(), wrong(None, "rows", 0.0, "are too few".to_owned()));

@@ -93,7 +93,7 @@ pub fn from_value(value: &Value, folder: &Folder, warnings: &mut Vec<String>) ->
         if let (Some(Plain(given)), Some(listed)) = (given, listed)
             && given != listed
         {
-            warnings.push(format!("material.{key} = {given} overrides {listed} of {name}"));
+            warnings.push(format!("material: material.{key} = {given} overrides {listed} of {name}"));
         }
         let quantity = Input::KEYS.iter().find(|own| own.name == key).and_then(|own| own.quantity);
         let value = given.map(|given| given.0).or(listed);

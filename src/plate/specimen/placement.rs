@@ -186,7 +186,7 @@ fn closely_passed(specimen: &Specimen, lines: &[CrackLine]) -> Vec<String> {
             (gap <= MOUTH * line.length() && end > MOUTH * line.length()).then(|| {
                 let thin = "the ligament is too thin to resolve and K may be far off";
                 let remedy = "end the crack in the hole and start another beyond it";
-                format!("specimen.cracks[{i}] passes holes[{j}] at {} mm: {thin}; {remedy}", round_mm(gap.max(0.0)))
+                format!("cracks: specimen.cracks[{i}] passes holes[{j}] at {} mm: {thin}; {remedy}", round_mm(gap.max(0.0)))
             })
         };
         specimen.holes.iter().enumerate().filter_map(near).collect::<Vec<_>>()
@@ -271,7 +271,7 @@ fn check_corners(corners: &[Point], key: &str, notes: &mut Vec<String>) -> Resul
             return Err(input_missing(key, format!("{problem}: such a sharp corner acts like a tip but does not grow"), remedy));
         }
         if turn > SHARP {
-            notes.push(format!("{key} {problem}: such a sharp corner acts like a tip but does not grow"));
+            notes.push(format!("cracks: {key} {problem}: such a sharp corner acts like a tip but does not grow"));
         }
     }
     Ok(())
@@ -306,7 +306,7 @@ fn cut_end(specimen: &Specimen, [end, other]: [Point; 2], key: &str, notes: &mut
             return Err(input_missing(key, format!("ends outside the plate at {}", given_mm(end)), remedy));
         };
         let edge = along(end, other, share);
-        notes.push(format!("{key} ends outside the plate at {}: shortened to the edge, at {}", given_mm(end), given_mm(edge)));
+        notes.push(format!("cracks: {key} ends outside at {}: shortened to the edge, at {}", given_mm(end), given_mm(edge)));
         return Ok((edge, true));
     }
     Ok((end, false))
@@ -318,7 +318,7 @@ fn at_mouth(specimen: &Specimen, [end, other]: [Point; 2], length: f64, key: &st
         return (end, false);
     };
     let near = format!("{} mm from an edge (under 1 % of its length, {} mm)", round_mm(gap), round_mm(length));
-    notes.push(format!("{key} ends {near}: moved to the edge, at {}", given_mm(mouth)));
+    notes.push(format!("cracks: {key} ends {near}: moved to the edge, at {}", given_mm(mouth)));
     (mouth, true)
 }
 

@@ -87,7 +87,7 @@ pub fn turning_cost_of_springs(net: &Net) -> Option<f64> {
 pub fn turning_warning(cost: Option<f64>, [choice, remedy]: [&str; 2]) -> Option<String> {
     let percent = 100.0 * cost.filter(|cost| *cost > COSTS)?;
     Some(format!(
-        "{choice}: rigid rotation by 1 mrad costs {percent:.3} % of the energy of 1e-3 strain, and should cost none: too \
+        "rotation: {choice}: rigid rotation by 1 mrad costs {percent:.3} % of the energy of 1e-3 strain, and should cost none: too \
          stiff in shear, in bending and near cracks; {remedy}"
     ))
 }

@@ -504,7 +504,7 @@ class Fatigue(TypedDict, total=False):
     initiation: FatigueInitiation  # Initiation life: S-N law of the local stress, phase I; -
     failure: Literal["stretch"]  # Failure: criterion of bonds; -
     fitted: str  # Fitted law: file that `perilife calibrate` wrote; -
-    growth_law: Literal["bond_law", "paris", "walker", "forman", "nasgro", "table"]  # Growth law: default by the constants given; -
+    growth_law: Literal["bond_law", "paris", "walker", "forman", "nasgro", "table", "library"]  # Growth law: default by the constants given; -
     a: float  # bond constant A; -
     p: float  # bond exponent p; -
     horizon_mm: float  # horizon of A; -

@@ -3,16 +3,19 @@
 use super::{Check, Side, Verdict};
 use crate::format::{PLAIN, short};
 use crate::spectrum::retarded;
-use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_base::input::Folder;
+use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::record::FittedRecord;
-use perilife_growth::case::{Case, LawSource};
+use perilife_growth::case::{Case, Engine, LawSource, library_law};
 use perilife_growth::predict::fit_use;
 use perilife_growth::predict::judgement::first_delta_k;
 use perilife_growth::predict::part_through::PartThroughLife;
 use perilife_growth::predict::plastic_zone::plastic_zone;
 use perilife_growth::predict::{CurvePoint, Prediction};
-use perilife_plate::material::growth_data::BATCH_FACTOR;
+use perilife_laws::growth_law::{GrowthLaw, Walker};
+use perilife_plate::material::growth_data::{self, BATCH_FACTOR, GrowthRecord, MM_PER_INCH, MPA_SQRT_M_PER_KSI_SQRT_IN};
 use perilife_plate::specimen::SpecimenKind;
+use perilife_plate::specimen::handbook::handbook;
 use perilife_plate::specimen::part_through::STATED_ERROR;
 
 /// Effect on life, percent, above which a check is a caution; no effect is known more precisely.
@@ -23,6 +26,8 @@ const OUTSIDE_CAUTION: f64 = 0.05;
 const THICKNESS_ALIKE: f64 = 1.25;
 /// Factor of the life by retardation above which it is a caution.
 const RETARDED_CAUTION: f64 = 1.5;
+/// Rate in the middle of the range of growth data, mm/cycle.
+const RATE_MIDDLE: f64 = 1e-4;
 /// Exponent where the law has none: what an error of K does to the rate.
 const EXPONENT_USUAL: f64 = 3.0;
 
@@ -32,14 +37,15 @@ pub(super) fn of_run(case: &Case, prediction: &Prediction) -> Vec<Check> {
     checks.extend(small_scale_yielding(case, prediction));
     checks.extend(extrapolation(case, prediction));
     checks.extend(cross_check(case, prediction));
+    checks.extend(handbook_range(case, prediction));
     checks.extend(part_through(case, prediction));
     checks.extend(retardation(case, prediction));
     checks
 }
 
 pub(super) fn of_law(case: &Case, prediction: Option<&Prediction>) -> impl Iterator<Item = Check> {
-    let all = [stress_ratio(case, prediction), thickness(case), size(case), lack_of_fit(case), growth_data(case)];
-    all.into_iter().flatten()
+    let of_test = [stress_ratio(case, prediction), thickness(case), size(case), lack_of_fit(case)];
+    of_test.into_iter().chain([growth_data(case), units_of_c(case)]).flatten()
 }
 
 pub(super) fn strength(case: &Case, name: &'static str) -> Check {
@@ -108,7 +114,8 @@ pub(super) fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Opti
         Some(from) => {
             let again = if is_first { " and again at the end" } else { "" };
             let until = zone.too_large_to.map_or_else(|| again.to_owned(), |to| format!(" to {}", two_digits(to)));
-            format!("not valid from a = {from}{until} ({percent:.1} % of life)")
+            let valid = if percent > CAUTION_PERCENT { "not valid" } else { "valid except" };
+            format!("{valid} from a = {from}{until} ({percent:.1} % of life; limit {CAUTION_PERCENT} %)")
         }
     };
     let remedy = match zone.too_small {
@@ -191,6 +198,18 @@ fn cross_check(case: &Case, prediction: &Prediction) -> Option<Check> {
     // A K that is too large makes lives too short.
     let side = Side::too_long(check.difference <= 0.0);
     Some(Check::sized("cross_check", percent.abs(), check.is_large(), side, words, "reduce model.spacing_mm"))
+}
+
+/// How much of the life the formula for K is not made for; a share that shows in no life is not worth a check.
+fn handbook_range(case: &Case, prediction: &Prediction) -> Option<Check> {
+    let formula = handbook(&case.specimen).filter(|_| case.engine() == Engine::Handbook)?;
+    let is_outside = |pair: &&[CurvePoint]| !pair.iter().all(|row| formula.holds_at(row.crack_length));
+    let outside: f64 = prediction.curve.windows(2).filter(is_outside).map(|pair| pair[1].cycles - pair[0].cycles).sum();
+    let percent = 100.0 * outside / prediction.life_cycles();
+    let words = format!("Handbook K: {percent:.1} % of life outside the range of {} ({})", formula.name, formula.range);
+    let remedy = "start and stop within it, or use model.method = \"element_free_galerkin\"";
+    let check = Check::sized("handbook_range", percent, percent > CAUTION_PERCENT, Side::Either, words, remedy);
+    (percent > 0.1).then_some(check)
 }
 
 /// Effect of the stated error of K of a part-through crack on the life, and the share of life outside its range; none of an empty life.
@@ -310,4 +329,31 @@ fn growth_data(case: &Case) -> Option<Check> {
     let words =
         format!("Growth data: library values; another lot may grow at {BATCH_FACTOR} times or 1/{BATCH_FACTOR} of the rate");
     Some(Check::sized("growth_data", percent, true, Side::Either, words, "fit the law to tests of this lot"))
+}
+
+/// Constants in inches under keys in mm: by the growth data of the named material, in the middle of their range, too slow as they stand and
+/// right as in/cycle and ksi√in.
+fn units_of_c(case: &Case) -> Option<Check> {
+    let law: Box<dyn GrowthLaw> = match &case.law {
+        _ if case.law_record.is_some() || case.growth_data.is_some() => return None,
+        LawSource::Paris(paris) => Box::new(Walker { paris: *paris, gamma: 1.0, threshold: 0.0 }),
+        LawSource::Factor(law) => Box::new(law.clone()),
+        _ => return None,
+    };
+    let (name, ratio) = (&case.material.name, case.loading.ratio);
+    let rate = |law: &dyn GrowthLaw, k: f64| law.rate(k * MPA_SQRT_M / (1.0 - ratio.max(0.0)), ratio) / MM_PER_CYCLE;
+    let records = growth_data::records().into_iter().filter(|of| !name.is_empty() && of.name.starts_with(name.as_str()));
+    let law_of = |of: GrowthRecord| library_law(&of.name, case.specimen.thickness, ratio, &Folder::none()).ok();
+    let known: Vec<_> = records.filter_map(law_of).collect();
+    let at = |k: f64| [f64::min, f64::max].map(|of| known.iter().map(|(law, _)| rate(&**law, k)).fold(f64::NAN, of));
+    let middle = (3..=60).map(f64::from).find(|k| at(*k)[1] >= RATE_MIDDLE)?;
+    let [low, high] = [at(middle)[0] / BATCH_FACTOR, at(middle)[1] * BATCH_FACTOR];
+    let (metric, inch) = (rate(&*law, middle), MM_PER_INCH * rate(&*law, middle / MPA_SQRT_M_PER_KSI_SQRT_IN));
+    let words = format!(
+        "Units of C: at ΔK {middle} MPa√m {metric:.1e} mm/cycle as entered, {inch:.1e} if C is of in/cycle and ksi√in; {name} grows by \
+         {low:.1e} to {high:.1e}"
+    );
+    let remedy = "enter constants of in/cycle and ksi√in by the keys in inches (paris_c_in_per_cycle)";
+    let check = Check::sized("units_of_c", 100.0 * (inch / metric - 1.0), true, Side::NonConservative, words, remedy);
+    (metric < low && (low..=high).contains(&inch)).then_some(check)
 }

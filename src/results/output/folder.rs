@@ -284,6 +284,6 @@ fn room(name: &Path, folder: &Path, wanted: Room) -> Result<Option<String>> {
     }
     Ok((free < wanted.all).then(|| {
         let [free, all] = [free, wanted.all].map(words);
-        format!("{}: {free} are free there, and the run may write {all}: its tables come first", name.display())
+        format!("disk: {}: {free} are free there, and the run may write {all}: its tables come first", name.display())
     }))
 }

@@ -107,7 +107,7 @@ fn details(fit: &LivesRecord, plate: Option<&Plate>, signed: &Signed) -> String 
     ];
     let mut of_test =
         vec![("Load", text("load")), ("Maximum force", text("load_max")), ("Stress ratio R", number("stress_ratio", ""))];
-    of_test.extend(signed.conditions().map(|(what, value)| (what, recorded(value))));
+    of_test.extend(signed.conditions(test));
     let mut page = format!(
         "<div class=\"cols paged\"><div><h2>Specimen</h2>{}</div><div><h2>Test</h2>{}</div></div>\n",
         terms(&specimen),

@@ -9,6 +9,7 @@ mod prediction;
 
 use std::path::Path;
 
+use serde_json::Value;
 use toml::Table;
 
 use super::chart::Size;
@@ -265,14 +266,15 @@ impl Signed {
         Some(format!("{}{revision}", self.number.as_ref()?))
     }
 
-    /// The test conditions that ASTM E647 asks for, with the labels of their keys.
-    pub(super) fn conditions(&self) -> impl Iterator<Item = (&'static str, Option<&str>)> {
+    /// The test conditions that ASTM E647 asks for, with the labels of their keys; else what the files of readings note of them.
+    pub(super) fn conditions(&self, noted: &Value) -> impl Iterator<Item = (&'static str, String)> {
         macro_rules! of {
             ($($key:ident),+) => { [$((stringify!($key), self.$key.as_deref())),+] };
         }
         let first = of!(product_form, orientation, notch, precracking, machine, waveform, environment);
         let all = first.into_iter().chain(of!(crack_measurement, crack_resolution, interruptions));
         let label = |name| Self::KEYS.iter().find(|key| key.name == name).map_or(name, |key| key.label_and_hint().0);
-        all.map(move |(name, value)| (label(name), value))
+        let noted = move |name: &str| noted[name].as_str().map(|value| format!("{} (noted in the test file)", quoted(value)));
+        all.map(move |(name, value)| (label(name), noted(name).filter(|_| value.is_none()).unwrap_or_else(|| recorded(value))))
     }
 }

@@ -300,7 +300,7 @@ fn of_points(case: &Case, points: &PointSettings) -> Result<Preview> {
     let held = stuck(body, &bonds, &tips, &case.fatigue).into_iter().map(|tip| {
         let [x, y] = tips[tip].position.map(mm);
         format!(
-            "the crack tip at ({x}, {y}) mm is inside the no-failure zone of a load or support and will not grow; \
+            "bonds: the crack tip at ({x}, {y}) mm is inside the no-failure zone of a load or support and will not grow; \
              move it one horizon away ({} mm), or load the plate elsewhere",
             mm(body.horizon())
         )

@@ -74,12 +74,12 @@ pub fn run(
     let excess = account.excess();
     if iterations.is_some() {
         fracture.warnings.push(format!(
-            "the plate was not at rest in its load steps: {:.2} % of the work is kinetic or damped",
+            "energy: the plate was not at rest in its load steps: {:.2} % of the work is kinetic or damped",
             100.0 * excess
         ));
     } else if excess.abs() > EXCESS_TOLD {
         fracture.warnings.push(format!(
-            "{:.2} % of the work is neither strain nor fracture energy: unstable jump, whose energy a scene without time does \
+            "energy: {:.2} % of the work is neither strain nor fracture energy: unstable jump, whose energy a scene without time does \
              not track",
             100.0 * excess
         ));

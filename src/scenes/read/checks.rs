@@ -171,12 +171,12 @@ pub fn lines(scene: &Scene) -> Vec<String> {
         let late = scene.drives.iter().find(|drive| drive.rise.end() > duration);
         lines.extend(late.map(|drive| {
             let end = drive.rise.end();
-            format!("the load on {} rises until {end} s; the scene ends at {duration} s, before the full load", drive.region)
+            format!("loading: that on {} rises until {end} s; the scene ends at {duration} s, before the full load", drive.region)
         }));
     }
     let graded = scene.model.arrangement != Discretisation::Lattice;
     if graded && scene.refinement.is_none() {
-        lines.push(format!("{} without [refinement]: all points have one level", scene.model.arrangement));
+        lines.push(format!("refinement: {} without [refinement]: all points have one level", scene.model.arrangement));
     }
     let nu = scene.material.poisson_ratio;
     if let SceneLaw::Bonds(law) = scene.model.law
@@ -184,7 +184,7 @@ pub fn lines(scene: &Scene) -> Vec<String> {
         && scene.damage.law == DamageLaw::CriticalEnergy
     {
         lines.push(format!(
-            "damage.law = \"critical_energy\" on bond_based uses normal stretch only, as critical_stretch does (nu {nu})"
+            "damage: damage.law = \"critical_energy\" on bond_based uses normal stretch only, as critical_stretch does (nu {nu})"
         ));
     }
     lines.extend(zero_energy_line(scene));
@@ -202,5 +202,5 @@ fn zero_energy_line(scene: &Scene) -> Option<String> {
         passed("correspondence, silling: global").map(|(end, bound)| (end, bound, "error of displacements")).or_else(|| {
             passed("correspondence, silling: nodal").map(|(end, bound)| (end, bound, "scatter of strain between points"))
         })?;
-    Some(format!("model.zero_energy_factor {factor}: beyond {end} {what} above {bound} %; remove it"))
+    Some(format!("zero energy: model.zero_energy_factor {factor}: beyond {end} {what} above {bound} %; remove it"))
 }

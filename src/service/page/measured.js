@@ -174,8 +174,8 @@ export function createMeasured(onChange) {
   }
 
   function warnings() {
-    // Most of them begin with the file themselves.
-    const named = (file, line) => (line.startsWith(`${file}:`) ? line : `${file}: ${line}`);
+    // Most of them say the file themselves.
+    const named = (file, line) => (line.includes(`${file}:`) ? line : `${file}: ${line}`);
     // Whoever has said what the columns are knows which are not read.
     const isNews = (line) => !(columns.names() && line.includes(": ignored columns: "));
     const list = answer.flatMap((file) => file.warnings.filter(isNews).map((line) => named(file.file, line)));

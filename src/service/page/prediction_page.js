@@ -125,8 +125,7 @@ export async function openPrediction(root, id, signal) {
     show(outcome, answerCard({ ...done.summary, ...result }, [...partThroughTerms(result), ...spectrumTerms(result)]));
     head.offer(reportButton(done, () => remaining?.wanted()));
     head.describe(describe(result));
-    // The refusal stands in the answer.
-    const messages = (result.warnings ?? []).filter((line) => !result.refused?.includes(line));
+    const messages = result.warnings ?? [];
     below.prepend(element("div", { class: "two" }, howComputed(done, result),
       messages.length > 0 && element("div", { class: "card" }, warningList(messages, "Messages"))));
     const spectrum = spectrumCard(result);

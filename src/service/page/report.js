@@ -12,6 +12,8 @@ import { kept } from "./units.js";
 
 /** Items of one report; all others are proposed for the next. */
 const OF_ONE = ["number", "revision", "revision_reason", "date"];
+/** Test conditions that a laboratory notes above its table. */
+const NOTED = ["orientation", "environment"];
 /** The last item of every report; test conditions follow, which belong to calibrations. */
 const LAST = "approver";
 
@@ -26,7 +28,8 @@ async function openDialog(job, inspection) {
   const all = keysOf("report");
   const keys = job.kind === "calibration" ? all : all.slice(0, all.findIndex(({ metric }) => metric === LAST) + 1);
   const fields = createFields(createForm(() => {}), "report", keys);
-  fields.fill(job.report ?? { date: new Date().toISOString().slice(0, 10), ...JSON.parse(kept("report") ?? "{}") });
+  const noted = Object.fromEntries(NOTED.map((name) => [name, job.summary?.test?.[name]]).filter(([, value]) => value));
+  fields.fill(job.report ?? { date: new Date().toISOString().slice(0, 10), ...JSON.parse(kept("report") ?? "{}"), ...noted });
   const interval = inspection && element("input", { type: "checkbox", id: "report-interval", checked: inspection.isChosen });
   const trouble = element("div");
 

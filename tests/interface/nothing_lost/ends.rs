@@ -235,7 +235,7 @@ fn mounted_and_full_places() {
         perilife(here, &["predict", "small.toml", "--out", "out/x", "-q", "--paraview", "--set", "model.spacing_mm=0.5"]);
     let (code, stderr) = (output.status.code(), texts(&output).1);
     assert_eq!(code, Some(4), "{stderr}");
-    assert!(stderr.contains("warning: out/x: ") && stderr.contains("its tables come first"), "{stderr}");
+    assert!(stderr.contains("warning: disk: out/x: ") && stderr.contains("its tables come first"), "{stderr}");
     assert!(stderr.trim_end().ends_with("partial results are in out/x.result"), "{stderr}");
     for file in ["a_n.csv", "crack_path.csv", "result.json", "case.toml"] {
         assert!(fs::metadata(mounted.join("x.result").join(file)).unwrap().len() > 0, "{file}");

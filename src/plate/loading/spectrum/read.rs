@@ -34,7 +34,7 @@ impl Spectrum {
             let (format, content, mut notes) = content(&bytes, &path, input.spectrum_format, scale)?;
             let cycles = cycles_of(content, &mut notes)?;
             let sha256 = perilife_base::input::sha256(&bytes);
-            let of_file = |note: String| if note.contains(file) { note } else { format!("{file}: {note}") };
+            let of_file = |note: String| if note.contains(file) { note } else { format!("spectrum: {file}: {note}") };
             Spectrum::of(cycles, [omission, truncation]).map(|spectrum| Spectrum {
                 file: file.to_owned(),
                 format,

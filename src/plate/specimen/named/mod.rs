@@ -97,8 +97,8 @@ pub(super) fn from_value(description: &SpecimenSpec, value: &Value, notes: &mut 
     let first = notes.len();
     let plate = drawing.specimen(description.kind, notes).map_err(|error| by_own_keys(error, crack_key, value))?;
     for note in &mut notes[first..] {
-        if let Some((_, rest)) = note.strip_prefix(CRACKS).and_then(|rest| rest.split_once(']')) {
-            *note = format!("{crack_key}: a crack{rest}");
+        if let Some((_, rest)) = note.split_once(CRACKS).and_then(|(_, rest)| rest.split_once(']')) {
+            *note = format!("cracks: {crack_key}: a crack{rest}");
         }
     }
     let crack_length = crack_length.unwrap_or(plate.crack_length);

@@ -74,7 +74,7 @@ pub(in crate::specimen) fn from_value(
     (specimen.cracks, specimen.tips) = flaw.seen_from_front(half_length);
     specimen.crack_length = half_length;
     if length.is_none() {
-        notes.push(format!("specimen.length_mm not given: {LENGTH_OVER_WIDTH} W assumed after breakthrough"));
+        notes.push(format!("plate: specimen.length_mm not given: {LENGTH_OVER_WIDTH} W assumed after breakthrough"));
     }
     Ok(specimen)
 }

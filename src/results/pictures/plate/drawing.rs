@@ -285,14 +285,15 @@ impl<'a> Drawing<'a> {
         // Words wider than the picture are written smaller.
         let letters = self.plate.load.chars().count() as f64;
         let text = self.text.min((self.width - 8.0) / (0.54 * letters.max(1.0)));
+        let top = sketch.place(bounding_box(&self.plate.outline_mm)[1])[1] - 6.0;
         // The upper of two that pull against each other, where it has room for words.
         let is_up = |load: &&LoadDrawn| load.direction[1] > 0.5 || self.plate.loads.iter().all(|load| load.direction[1] < 0.5);
         let at = |load: &LoadDrawn| {
             let middle = along(sketch.place(load.from_mm), sketch.place(load.to_mm), 0.5);
             let tip = self.start(load, sketch.scale) + ARROW + 4.0;
             let place = [middle[0] + tip * load.direction[0], middle[1] - tip * load.direction[1] - 3.0];
-            // Words wider than the plate stay within the picture.
-            [place[0].max(4.0 + 0.27 * text * letters), place[1].max(1.2 * text)]
+            // Words wider than the plate stay within the picture; those of a pin stand above the plate.
+            [place[0].max(4.0 + 0.27 * text * letters), place[1].min(top).max(1.2 * text)]
         };
         match self.plate.loads.iter().find(is_up).map(at) {
             Some(place) => sketch.name(place, &self.plate.load, "middle", text, INK),
