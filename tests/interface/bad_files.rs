@@ -109,19 +109,12 @@ fn broken_overrides_are_refused() {
 }
 
 #[test]
-fn missing_and_unreadable_files_are_file_errors() {
+fn unreadable_content_is_wrong_input_and_a_missing_material_a_file_error() {
     let folder = tempfile::tempdir().unwrap();
-    for path in [folder.path().join("nowhere.toml"), folder.path().to_path_buf()] {
-        let error = Case::from_file(&path, &[]).unwrap_err();
-        assert!(matches!(error, Error::File { .. }), "{error}");
-        assert_eq!(error.exit_code(), 4);
-        assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");
-    }
-    // An own material file that does not exist.
     let text = GOOD[0]["panel"].replace("name = \"al2024-t3\"", "name = \"own.toml\"");
     let error = Case::from_toml(&text, "case", folder.path(), &[]).unwrap_err();
     assert!(error.exit_code() == 4 && error.to_string().contains("own.toml"), "{error}");
-    // Bytes that are not text, and nothing at all, are wrong input.
+    // Bytes that are not text, and nothing at all.
     let file = folder.path().join("binary.toml");
     for (bytes, words) in [(&[0x66, 0x6f, 0xff, 0xfe][..], &["UTF-8"][..]), (&[], &["specimen", "missing"])] {
         std::fs::write(&file, bytes).unwrap();
@@ -139,7 +132,7 @@ fn cases_and_scenes_are_sent_to_their_command() {
         assert!(error.contains("perilife fracture") && (text != &bare || error.contains("loading.kind")), "{error}");
     }
     let folder = desk(&[("case.toml", &SMALL_CASE)]);
-    let output = perilife(folder.path(), &["fracture", "case.toml", "--out", "run"]);
+    let output = perilife(folder.path(), "fracture case.toml --out run");
     assert_refused(&output, 2, &["case.toml", "perilife predict"]);
 }
 
@@ -236,13 +229,13 @@ fn bad_designs_are_refused_before_anything_runs() {
     for (head, rest, code, words) in rows::<Vec<(String, String, i32, Vec<String>)>>("bad_sweeps", "broken") {
         let dir = folder_with(&format!("{}{rest}", heads.get(&head).map_or("", String::as_str)));
         println!("{head} {rest}");
-        let output = perilife(dir.path(), &["sweep", "sweep.toml", "--out", "out"]);
+        let output = perilife(dir.path(), "sweep sweep.toml --out out");
         assert_refused(&output, code, &words);
         assert!(!dir.path().join("out").exists());
     }
     let dir = folder_with(GRID);
     for shard in ["0/3", "4/3", "1", "a/b"] {
-        let output = perilife(dir.path(), &["sweep", "sweep.toml", "--out", "out", "--shard", shard]);
+        let output = perilife(dir.path(), &format!("sweep sweep.toml --out out --shard {shard}"));
         assert_eq!(output.status.code(), Some(2), "{shard}");
     }
 }
@@ -267,7 +260,7 @@ fn every_broken_curve_is_refused_with_place_value_and_remedy() {
     for (name, bytes, words) in text.map(|(name, text, words)| (name, text.into_bytes(), words)).chain([picture]) {
         let file = format!("{name}.csv");
         fs::write(folder.path().join(&file), bytes).unwrap();
-        let output = perilife(folder.path(), &["rates", &file, "--specimen", "panel.toml", "--out", "rates.csv"]);
+        let output = perilife(folder.path(), &format!("rates {file} --specimen panel.toml --out rates.csv"));
         assert_refused(&output, 2, &[&file]);
         assert_refused(&output, 2, &words);
         let (_, stderr) = texts(&output);
@@ -298,7 +291,7 @@ fn unusual_but_right_files_are_read() {
     let together = format!("\u{feff}{}", decimal_comma.replace('\n', "\r\n"));
     let rates = |name: &str, text: &str| {
         fs::write(folder.path().join(name), text).unwrap();
-        let (stdout, _) = done(folder.path(), &["rates", name, "--specimen", "panel.toml", "--method", "secant"]);
+        let (stdout, _) = done(folder.path(), &format!("rates {name} --specimen panel.toml --method secant"));
         stdout
     };
     let expected = rates("plain.csv", &plain);
@@ -320,10 +313,10 @@ fn json_is_one_object_and_the_same_specimen_twice_is_refused() {
     let folder = tempdir().unwrap();
     let text = format!("{HEADER}{ROWS}S1,4000,9.9\nS1,5000,10.3\nS1,6000,10.9\n");
     ["a.csv", "b.csv"].iter().for_each(|name| fs::write(folder.path().join(name), &text).unwrap());
-    let output = perilife(folder.path(), &["rates", "a.csv", "--json"]);
+    let output = perilife(folder.path(), "rates a.csv --json");
     let object: serde_json::Value = serde_json::from_str(&texts(&output).0).unwrap();
     assert_eq!(object["method"], "polynomial7");
     assert_eq!(object["specimens"][0]["points"].as_array().unwrap().len(), 1);
     assert!(object["specimens"][0]["points"][0]["delta_k_mpa_sqrt_m"].is_null(), "no specimen, no ΔK");
-    assert_refused(&perilife(folder.path(), &["rates", "a.csv", "b.csv"]), 2, &["b.csv:2", "specimen = S1", "a.csv", "own name"]);
+    assert_refused(&perilife(folder.path(), "rates a.csv b.csv"), 2, &["b.csv:2", "specimen = S1", "a.csv", "own name"]);
 }

@@ -6,11 +6,10 @@ use std::path::Path;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::daily::panel_without_law;
 use crate::support::desk::{done, json};
 use crate::support::rows::assert_says;
 
-const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300.0\nthickness_mm = 2.54\ncrack_length_mm = 9.0\n\
-    [material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n[model]\nmethod = \"handbook\"\n";
 const REST: &str = "[fatigue]\nfitted = \"fit/fitted.toml\"\n[stop]\ncrack_length_mm = 45.0\n";
 
 /// A folder with the committed readings, a record of them by hand calculation, and a case.
@@ -18,9 +17,9 @@ fn folder() -> TempDir {
     let dir = tempdir().unwrap();
     let readings = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration/al2024-t3/measured/virkler_median.csv");
     fs::copy(readings, dir.path().join("median.csv")).unwrap();
-    fs::write(dir.path().join("fit.toml"), format!("[measured]\nfiles = [\"median.csv\"]\n{PANEL}")).unwrap();
-    fs::write(dir.path().join("case.toml"), format!("{PANEL}{REST}")).unwrap();
-    done(dir.path(), &["calibrate", "fit.toml", "--out", "fit"]);
+    fs::write(dir.path().join("fit.toml"), format!("[measured]\nfiles = [\"median.csv\"]\n{}", panel_without_law())).unwrap();
+    fs::write(dir.path().join("case.toml"), format!("{}{REST}", panel_without_law())).unwrap();
+    done(dir.path(), "calibrate fit.toml --out fit");
     dir
 }
 
@@ -38,8 +37,7 @@ fn write_readings(folder: &Path, name: &str, to_mm: f64, factor: f64) {
 #[test]
 fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
     let dir = folder();
-    let (stdout, _) = done(dir.path(), &["predict", "case.toml", "--out", "run", "--inspect-from", "20"]);
-    println!("{stdout}");
+    let (stdout, _) = done(dir.path(), "predict case.toml --out run --inspect-from 20");
     assert_says(
         &stdout,
         &[
@@ -49,7 +47,7 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
             "(5 % remaining life / 3)",
         ],
     );
-    let (said, _) = done(dir.path(), &["predict", "case.toml", "--out", "given", "--set", "fatigue.lot=same"]);
+    let (said, _) = done(dir.path(), "predict case.toml --out given --set fatigue.lot=same");
     assert!(said.contains("same lot") && !said.contains("fatigue.lot"), "{said}");
     let result = json(dir.path().join("run/result.json"));
     let band = &result["band"];
@@ -69,33 +67,27 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
     let last: Vec<f64> = table.lines().last().unwrap().split(',').map(|field| field.parse().unwrap_or(f64::NAN)).collect();
     assert!((last[place] / low - 1.0).abs() < 1e-12 && (last[place + 2] / high - 1.0).abs() < 1e-12);
     // The table is read again as it was.
-    done(dir.path(), &["export", "run", "--points", "20", "--out", "export.csv"]);
+    done(dir.path(), "export run --points 20 --out export.csv");
 
     let without = "fatigue.fitted=\"bare.toml\"";
     let record = fs::read_to_string(dir.path().join("fit/fitted.toml")).unwrap();
     fs::write(dir.path().join("bare.toml"), record.split("[population]").next().unwrap()).unwrap();
-    let (stdout, _) =
-        done(dir.path(), &["predict", "case.toml", "--out", "bare", "--set", without, "--inspect-from", "20", "--factor", "2"]);
+    let (stdout, _) = done(dir.path(), &format!("predict case.toml --out bare --set {without} --inspect-from 20 --factor 2"));
     assert!(stdout.contains("Scatter band   not available: fitted law without [population]"), "{stdout}");
     assert!(stdout.contains("(remaining life / 2; no scatter band)"), "{stdout}");
     let result = json(dir.path().join("bare/result.json"));
     assert!(result["band"].is_null() && result["inspection"]["has_band"] == false);
     assert!(!fs::read_to_string(dir.path().join("bare/a_n.csv")).unwrap().contains("cycles_p05"));
     fs::write(dir.path().join("bare.toml"), record.replacen("pivot = ", "pivot = -", 1)).unwrap();
-    assert_refused(
-        &perilife(dir.path(), &["predict", "case.toml", "--out", "no", "--set", without]),
-        2,
-        &["case.toml", "fatigue.fitted", "law.pivot = -", "calibrate again"],
-    );
+    let output = perilife(dir.path(), &format!("predict case.toml --out no --set {without}"));
+    assert_refused(&output, 2, &["case.toml", "fatigue.fitted", "law.pivot = -", "calibrate again"]);
 }
 
 #[test]
 fn readings_of_the_plate_narrow_what_it_has_left() {
     let dir = folder();
     write_readings(dir.path(), "own.csv", 25.0, 0.9);
-    let (stdout, _) =
-        done(dir.path(), &["predict", "case.toml", "--out", "run", "--measured", "own.csv", "--inspect-from", "30"]);
-    println!("{stdout}");
+    let (stdout, _) = done(dir.path(), "predict case.toml --out run --measured own.csv --inspect-from 30");
     assert!(stdout.contains("  This plate     last reading 25.0 mm at "), "{stdout}");
     let result = json(dir.path().join("run/result.json"));
     let (own, lot) = (&result["measured"], &result["measured"]["of_lot"]);

@@ -9,8 +9,10 @@ use assert_cmd::cargo::cargo_bin;
 use tempfile::tempdir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::interface::fracture;
 use crate::support::daily::{PANEL, SCENE, names, write_inputs};
-use crate::support::desk::desk;
+use crate::support::desk::{desk, done};
+use crate::support::server::wait;
 
 // A run that is killed goes on when it is called again, and gives the results of one that nobody killed.
 
@@ -31,116 +33,73 @@ fn kill_midway(folder: &Path, call: &[&str]) {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    let begun = Instant::now();
-    while state() == before {
-        assert!(run.try_wait().unwrap().is_none(), "the run ended before it was killed");
-        assert!(begun.elapsed() < Duration::from_secs(120), "no checkpoint");
-        std::thread::sleep(Duration::from_millis(1));
-    }
+    wait("no checkpoint", || state() != before || run.try_wait().unwrap().is_some());
     run.kill().unwrap();
     assert!(!run.wait().unwrap().success(), "the run ended before it was killed");
 }
 
-#[test]
-fn a_killed_run_goes_on_to_the_same_curve() {
-    let dir = tempdir().unwrap();
+/// A killed run of this command goes on to the same files; a checkpoint that is not whole, or not of this input, is refused and left.
+fn a_killed_run_goes_on(command: &str, text: &str, other: &str, files: [&str; 3], words: [&str; 3]) {
+    let dir = desk(&[("case.toml", &text)]);
     let folder = dir.path();
-    fs::write(folder.join("case.toml"), CASE).unwrap();
-    let whole = perilife(folder, &["predict", "case.toml", "--out", "whole"]);
-    assert!(whole.status.success(), "{}", texts(&whole).1);
-
-    let call = [&["predict", "case.toml", "--out", "run"], &KEEP[..]].concat();
+    done(folder, &format!("{command} case.toml --out whole"));
+    let call = [&[command, "case.toml", "--out", "run"], &KEEP[..]].concat();
     kill_midway(folder, &call);
     kill_midway(folder, &call);
     assert!(!folder.join("run").exists(), "no results of a run that was killed");
-    let kept = fs::read(folder.join("run.ckpt")).unwrap();
-
-    // Not for this case, or not whole: refused, and left as it is.
-    let other = [&call[..], &["--set", "loading.stress_max_mpa=71"]].concat();
-    assert_refused(&perilife(folder, &other), 2, &["run.ckpt: is for a different case", "remove it"]);
-    assert_eq!(fs::read(folder.join("run.ckpt")).unwrap(), kept);
-    let mut damaged = kept.clone();
+    let checkpoint = folder.join("run.ckpt");
+    let kept = fs::read(&checkpoint).unwrap();
+    let (mut damaged, mut older) = (kept.clone(), kept.clone());
     damaged[kept.len() / 2] ^= 1;
-    let broken: [(&[u8], &str); 4] = [
-        (&damaged, "run.ckpt: is damaged"),
-        (&kept[..kept.len() - 1], "run.ckpt: is damaged"),
-        (b"", "run.ckpt: is not a checkpoint of this program"),
-        (b"cycles,crack_length_mm\n", "run.ckpt: is not a checkpoint of this program"),
+    let version = env!("CARGO_PKG_VERSION").as_bytes();
+    let at = older.windows(version.len()).position(|window| window == version).unwrap();
+    older[at] = b'9';
+    let [of_another, no_checkpoint, resuming] = words;
+    let refused: [(&[u8], &[&str], &str); 6] = [
+        (&kept, &["--set", other], of_another),
+        (&damaged, &[], "is damaged"),
+        (&kept[..kept.len() - 1], &[], "is damaged"),
+        (&older, &[], "; this is "),
+        (b"", &[], no_checkpoint),
+        (b"perilife checkpoint\n", &[], no_checkpoint),
     ];
-    for (bytes, words) in broken {
-        fs::write(folder.join("run.ckpt"), bytes).unwrap();
-        assert_refused(&perilife(folder, &call), 2, &[words, "remove it"]);
-        assert_eq!(fs::read(folder.join("run.ckpt")).unwrap(), bytes, "what is refused is left");
+    for (bytes, set, words) in refused {
+        fs::write(&checkpoint, bytes).unwrap();
+        assert_refused(&perilife(folder, &[&call[..], set].concat()), 2, &["run.ckpt: ", words, "remove it"]);
+        assert_eq!(fs::read(&checkpoint).unwrap(), bytes, "what is refused is left");
     }
-
-    fs::write(folder.join("run.ckpt"), &kept).unwrap();
-    let rest = perilife(folder, &call);
-    let (_, stderr) = texts(&rest);
-    assert!(rest.status.success(), "{stderr}");
-    assert!(stderr.contains("case: resuming from run.ckpt: N = "), "{stderr}");
-    for file in ["a_n.csv", "crack_path.csv", "plate.svg"] {
+    fs::write(&checkpoint, &kept).unwrap();
+    let (_, stderr) = done(folder, &call);
+    assert!(stderr.contains(&format!("case: resuming from run.ckpt: {resuming} ")), "{stderr}");
+    for file in files {
         let [run, whole] = ["run", "whole"].map(|out| fs::read(folder.join(out).join(file)).unwrap());
         assert!(run == whole, "{file} differs");
     }
-    assert!(!folder.join("run.ckpt").exists(), "it goes when the run is done");
+    assert!(!checkpoint.exists(), "it goes when the run is done");
+}
+
+#[test]
+fn a_killed_run_goes_on_to_the_same_curve() {
+    let words = ["is for a different case", "is not a checkpoint of this program", "N ="];
+    a_killed_run_goes_on("predict", CASE, "loading.stress_max_mpa=71", ["a_n.csv", "crack_path.csv", "plate.svg"], words);
 }
 
 /// The plate torn in time on finer points and for longer: some hundred steps, taken down in every one.
-fn torn() -> String {
-    let finer =
-        [("spacing_mm = 1", "spacing_mm = 0.5"), ("[-10, 0], to_mm = [0, 0]", "[-10, 0.3], to_mm = [0, 0.3]"), ("2e-5", "3e-5")];
-    finer.into_iter().fold(crate::interface::fracture::SCENE.to_owned(), |text, (old, new)| {
-        assert!(text.contains(old), "{old}");
-        text.replacen(old, new, 1)
-    })
-}
-
 #[test]
 fn a_killed_scene_goes_on_to_the_same_files() {
-    let dir = tempdir().unwrap();
-    let folder = dir.path();
-    fs::write(folder.join("torn.toml"), torn()).unwrap();
-    let whole = perilife(folder, &["fracture", "torn.toml", "--out", "whole"]);
-    assert!(whole.status.success(), "{}", texts(&whole).1);
-
-    let call = [&["fracture", "torn.toml", "--out", "run"], &KEEP[..]].concat();
-    kill_midway(folder, &call);
-    kill_midway(folder, &call);
-    assert!(!folder.join("run").exists(), "no results of a run that was killed");
-    let kept = fs::read(folder.join("run.ckpt")).unwrap();
-    let mut damaged = kept.clone();
-    damaged[kept.len() / 2] ^= 1;
-    let mut older = kept.clone();
-    let at = older.windows(5).position(|window| window == env!("CARGO_PKG_VERSION").as_bytes()).unwrap();
-    older[at] = b'9';
-    let refused: [(&[u8], &str, &str); 5] = [
-        (&kept, "loading.velocity_mm_s=5001", "run.ckpt: is of another scene"),
-        (&damaged, "loading.velocity_mm_s=5000", "run.ckpt: is damaged"),
-        (&kept[..kept.len() - 1], "loading.velocity_mm_s=5000", "run.ckpt: is damaged"),
-        (&older, "loading.velocity_mm_s=5000", "; this is "),
-        (b"perilife checkpoint\n", "loading.velocity_mm_s=5000", "run.ckpt: is not a checkpoint of a scene of this program"),
-    ];
-    for (bytes, set, words) in refused {
-        fs::write(folder.join("run.ckpt"), bytes).unwrap();
-        assert_refused(&perilife(folder, &[&call[..], &["--set", set]].concat()), 2, &[words, "remove it"]);
-        assert_eq!(fs::read(folder.join("run.ckpt")).unwrap(), bytes, "what is refused is left");
-    }
-
-    fs::write(folder.join("run.ckpt"), &kept).unwrap();
-    let rest = perilife(folder, &[&["fracture", "torn.toml", "--out", "run"], &KEEP[..2]].concat());
-    let (_, stderr) = texts(&rest);
-    assert!(rest.status.success(), "{stderr}");
-    assert!(stderr.contains("torn: resuming from run.ckpt: step "), "{stderr}");
-    for file in ["history.csv", "crack_path.csv", "damage.svg"] {
-        let [run, whole] = ["run", "whole"].map(|out| fs::read(folder.join(out).join(file)).unwrap());
-        assert!(run == whole, "{file} differs");
-    }
-    assert!(!folder.join("run.ckpt").exists(), "it goes when the run is done");
+    let finer =
+        [("spacing_mm = 1", "spacing_mm = 0.5"), ("[-10, 0], to_mm = [0, 0]", "[-10, 0.3], to_mm = [0, 0.3]"), ("2e-5", "3e-5")];
+    let torn = finer.into_iter().fold(fracture::SCENE.to_owned(), |text, (old, new)| {
+        assert!(text.contains(old), "{old}");
+        text.replacen(old, new, 1)
+    });
+    let words = ["is of another scene", "is not a checkpoint of a scene of this program", "step"];
+    a_killed_run_goes_on("fracture", &torn, "loading.velocity_mm_s=5001", ["history.csv", "crack_path.csv", "damage.svg"], words);
 }
 
 #[test]
 fn places_and_times_for_a_checkpoint_are_checked_first() {
-    for (command, input) in [("predict", CASE), ("fracture", crate::interface::fracture::SCENE)] {
+    for (command, input) in [("predict", CASE), ("fracture", fracture::SCENE)] {
         let dir = desk(&[("case.toml", &input)]);
         fs::create_dir(dir.path().join("folder")).unwrap();
         let call = |more: &[&str]| perilife(dir.path(), &[&[command, "case.toml", "--out", "run"], more].concat());
@@ -172,7 +131,7 @@ fn a_run_ends_when_its_time_is_over() {
     // Nearly four million points: it ends while the plate is being built. A motion ends between two steps.
     for (command, input, limit) in [("predict", "large.toml", "0.5"), ("fracture", "long.toml", "1")] {
         let begun = Instant::now();
-        let output = perilife(here, &[command, input, "--out", "out", "-q", "--time-limit", limit]);
+        let output = perilife(here, &format!("{command} {input} --out out -q --time-limit {limit}"));
         let words = format!("stopped at the time limit of {limit} s; increase --time-limit, or use --checkpoint FILE");
         assert_refused(&output, 3, &[&words]);
         assert!(begun.elapsed() < Duration::from_secs(30), "{command}: {:?}", begun.elapsed());
@@ -181,8 +140,7 @@ fn a_run_ends_when_its_time_is_over() {
     // With a checkpoint the same command goes on, as often as it takes, to the same histories.
     let keep = ["--checkpoint", "run.ckpt", "--checkpoint-every", "0"];
     let shorter = ["--set", "loading.duration_s=1e-4"];
-    let whole = perilife(here, &[&["fracture", "long.toml", "--out", "whole", "-q"], &shorter[..]].concat());
-    assert!(whole.status.success(), "{}", texts(&whole).1);
+    done(here, &[&["fracture", "long.toml", "--out", "whole", "-q"], &shorter[..]].concat());
     let mut calls = 0;
     loop {
         let output = perilife(

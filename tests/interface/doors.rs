@@ -13,7 +13,7 @@ use crate::interface::cli::{perilife, texts};
 use crate::interface::service::QUICK;
 use crate::support::daily::{PANEL, READINGS};
 use crate::support::desk::done;
-use crate::support::server::{Server, in_folder};
+use crate::support::server::{Server, in_folder, multipart};
 use crate::support::slurm::Slurm;
 
 /// A case as this test runs it: its name, its text, the files that it names by their names there.
@@ -80,11 +80,11 @@ fn a_case_through_every_door_of_the_command_line() {
     let dir = written(&examples);
     let here = dir.path();
     let place = in_folder(&here.join("service"));
-    let _service = Server::start(&[&place[0], &place[1]], &["--jobs", "2"]);
+    let _service = Server::start(&place, &["--jobs", "2"]);
     let cluster = Slurm::start();
     for Example { name, text, .. } in &examples {
         let (file, run) = (format!("{name}.toml"), format!("{name}/predict"));
-        done(here, &["predict", &file, "--out", &run, "-q"]);
+        done(here, &format!("predict {file} --out {run} -q"));
         let right = answer(&here.join(&run));
         assert!(right.0[0].len() > 200, "{name}: a curve");
         // By its device: `pipes_are_files`.
@@ -129,7 +129,7 @@ fn a_case_through_every_door_of_the_service() {
     let dir = written(&examples);
     let here = dir.path();
     let place = in_folder(&here.join("service"));
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "2"]);
+    let service = Server::start(&place, &["--jobs", "2"]);
     for Example { name, text, files } in &examples {
         done(here, &["predict", &format!("{name}.toml"), "--out", name, "-q"]);
         let (tables, right) = answer(&here.join(name));
@@ -138,12 +138,8 @@ fn a_case_through_every_door_of_the_service() {
         let texts_of: serde_json::Map<String, Value> =
             files.iter().map(|(name, content)| (name.clone(), String::from_utf8(content.clone()).unwrap().into())).collect();
         let form = |input: &str| {
-            let parts = files.iter().map(|(name, content)| {
-                let content = String::from_utf8_lossy(content);
-                format!("--XX\r\ncontent-disposition: form-data; name=\"file\"; filename=\"{name}\"\r\n\r\n{content}\r\n")
-            });
-            let input = format!("--XX\r\ncontent-disposition: form-data; name=\"input\"\r\n\r\n{input}\r\n");
-            (input + &parts.collect::<String>() + "--XX--\r\n").into_bytes()
+            let parts = files.iter().map(|(name, content)| ("file", Some(&**name), str::from_utf8(content).unwrap()));
+            multipart(&[("input", None, input)].into_iter().chain(parts).collect::<Vec<_>>()).into_bytes()
         };
         let multipart = "Multipart/Form-Data; boundary=XX";
         let json_of = |input: Value| json!({ "input": input, "files": texts_of }).to_string().into_bytes();
@@ -177,7 +173,7 @@ fn a_calibration_predicts_as_predict_does() {
     fs::write(here.join("readings.csv"), READINGS).unwrap();
     let plate = plate.replace("stress_ratio = 0.2", &format!("stress_ratio = {}", 0.1 + 0.2));
     fs::write(here.join("fit.toml"), format!("[measured]\nfiles = [\"readings.csv\"]\n{plate}")).unwrap();
-    done(here, &["calibrate", "fit.toml", "--out", "fit", "-q"]);
+    done(here, "calibrate fit.toml --out fit -q");
     let mut same = 0;
     for (Example { name, text, .. }, extrapolates) in examples.iter().flat_map(|example| [(example, true), (example, false)]) {
         let name = format!("{name}_{extrapolates}");

@@ -47,17 +47,15 @@ fn readings_at_two_ratios_become_rates_a_law_and_a_life() {
     let here = dir.path();
     for name in ["r1", "r5"] {
         let [csv, toml, out] = ["csv", "toml", "rates.csv"].map(|end| format!("{name}.{end}"));
-        done(here, &["rates", &csv, "--specimen", &toml, "--out", &out]);
+        done(here, &format!("rates {csv} --specimen {toml} --out {out}"));
     }
     fs::write(here.join("laws.toml"), "[measured]\nrates = [\"r1.rates.csv\", \"r5.rates.csv\"]\n[fit]\nlaw = \"best\"\n")
         .unwrap();
     // Another stress ratio between them.
     fs::write(here.join("panel.toml"), format!("{SHEET}{}[stop]\ncrack_length_mm = 30\n", loading(0.3))).unwrap();
-    let (stdout, _) = done(here, &["calibrate", "laws.toml", "--out", "fit", "--predict", "panel.toml"]);
-    assert_says(
-        &stdout,
-        &["walker law at R = 0.1, 0.5", "lowest AICc; ", "paris_c_mm_per_cycle", "  Rejected       ", "panel: life"],
-    );
+    let (stdout, _) = done(here, "calibrate laws.toml --out fit --predict panel.toml");
+    let words = ["walker law at R = 0.1, 0.5", "lowest AICc; ", "paris_c_mm_per_cycle", "  Rejected       ", "panel: life"];
+    assert_says(&stdout, &words);
     for file in ["fitted.toml", "fit.json", "fit_rates.csv", "da_dn.svg", "panel/a_n.csv"] {
         assert!(fs::metadata(here.join("fit").join(file)).unwrap().len() > 0, "{file}");
     }
@@ -70,12 +68,12 @@ fn readings_at_two_ratios_become_rates_a_law_and_a_life() {
     assert!(report["aicc_margin"].as_f64().unwrap() > 10.0, "{report}");
     // The life is that of the law that made the readings.
     fs::write(here.join("truth.toml"), format!("{SHEET}{}{WALKER}[stop]\ncrack_length_mm = 30\n", loading(0.3))).unwrap();
-    done(here, &["predict", "truth.toml", "--out", "truth"]);
+    done(here, "predict truth.toml --out truth");
     let [fitted, truth] = ["fit/panel", "truth"].map(|run| json(here.join(run).join("result.json")));
     let life = |result: &Value| result["life_cycles"].as_f64().unwrap();
     assert!((life(&fitted) / life(&truth) - 1.0).abs() < 0.01, "{} for {}", life(&fitted), life(&truth));
     assert!(fitted["life_share_extrapolated"].as_f64().unwrap() < 0.05);
-    let (understood, _) = done(here, &["check", "laws.toml", "-v"]);
+    let (understood, _) = done(here, "check laws.toml -v");
     assert!(understood.contains("at R = 0.1, 0.5") && understood.contains("law best"), "{understood}");
     // The same law from the readings themselves, every third of them, each with its own load.
     let table = |name: &str, smallest: f64| {
@@ -91,12 +89,12 @@ fn readings_at_two_ratios_become_rates_a_law_and_a_life() {
     fs::write(here.join("all.csv"), all).unwrap();
     let case = format!("[measured]\nfiles = [\"all.csv\"]\n[fit]\nlaw = \"walker\"\n{SHEET}{}", loading(0.1));
     fs::write(here.join("direct.toml"), case).unwrap();
-    done(here, &["calibrate", "direct.toml", "--out", "direct"]);
+    done(here, "calibrate direct.toml --out direct");
     let gamma = json(here.join("direct/fit.json"))["constants"]["walker_gamma"].as_f64().unwrap();
     assert!((gamma - 0.6).abs() < 0.02, "{gamma}");
-    done(here, &["check", "direct.toml"]);
+    done(here, "check direct.toml");
     // A table of rates is read as readings too, as before.
-    done(here, &["rates", "r1.rates.csv", "--specimen", "r1.toml"]);
+    done(here, "rates r1.rates.csv --specimen r1.toml");
 }
 
 /// Lengths of a curve that grows by a law of its own, `dN = f(a) da`.
@@ -137,7 +135,7 @@ fn a_fit_without_an_optimum_writes_no_law() {
     for (case, data, words) in cases {
         fs::write(here.join("case.toml"), &case).unwrap();
         fs::write(here.join("data.csv"), data).unwrap();
-        assert_refused(&perilife(here, &["calibrate", "case.toml", "--out", "out"]), 3, &[words]);
+        assert_refused(&perilife(here, "calibrate case.toml --out out"), 3, &[words]);
         assert!(!here.join("out/fitted.toml").exists(), "{words}");
         assert_eq!(fs::read_dir(here).unwrap().count(), 2, "{words}: nothing half-written stays");
     }
@@ -154,31 +152,24 @@ fn rates_and_sweeps_tell_where_the_formula_does_not_hold() {
     let lengths: Vec<f64> = (0..12).map(|i| 4.0 + f64::from(i)).collect();
     fs::write(here.join("ct.csv"), curve(&lengths, |_| 1e5)).unwrap();
     // a/W 0.2 is 10 mm: secants at 4.5 to 9.5 mm lie below.
-    let (_, stderr) = done(here, &["rates", "ct.csv", "--specimen", "ct.toml", "--method", "secant", "--out", "rates.csv"]);
+    let (_, stderr) = done(here, "rates ct.csv --specimen ct.toml --method secant --out rates.csv");
     let words = "6 of 11 rates (54.5 %), at crack lengths from 4.500 to 9.500 mm, are outside the range of ASTM E647 compact";
     assert!(stderr.contains(words), "{stderr}");
     let sweep = "case = \"ct.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"specimen.crack_length_mm\"\nvalues = [9.5, 4.0, 11.0]\n";
     fs::write(here.join("sweep.toml"), sweep).unwrap();
-    let (_, stderr) = done(here, &["sweep", "sweep.toml", "--out", "out"]);
+    let (_, stderr) = done(here, "sweep sweep.toml --out out");
     let line = stderr.lines().find(|line| line.contains("of life outside the range of ASTM E647 compact"));
     let line = line.unwrap_or_else(|| panic!("{stderr}"));
     assert!(line.contains("and 1 more"), "{line}");
     let figures = json(here.join("out/sweep.json"));
-    let told = figures["warnings"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .find(|told| told["warning"].as_str().unwrap().contains("ASTM E647 compact"))
-        .unwrap();
+    let is_told = |told: &&Value| told["warning"].as_str().unwrap().contains("ASTM E647 compact");
+    let told = figures["warnings"].as_array().unwrap().iter().find(is_told).unwrap();
     // The second case starts at a/W 0.08 and spends nearly all of its life below 0.2.
     assert!(told["largest_percent"].as_f64().unwrap() > 60.0, "{told}");
     assert_ne!(told["largest_in"], told["first"], "{told}");
     let share = told["largest_percent"].to_string();
     assert!(line.contains(&share), "{share} in {line}");
     // A case inside the range says nothing.
-    let inside = done(
-        here,
-        &["rates", "ct.csv", "--specimen", "ct.toml", "--set", "specimen.width_mm=20", "--method", "secant", "--out", "r.csv"],
-    );
+    let inside = done(here, "rates ct.csv --specimen ct.toml --set specimen.width_mm=20 --method secant --out r.csv");
     assert!(!inside.1.contains("outside the range"), "{}", inside.1);
 }

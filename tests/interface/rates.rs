@@ -5,6 +5,7 @@ use std::fs;
 use tempfile::tempdir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::daily::panel_without_law;
 use crate::support::desk::{done, json};
 use crate::support::fatigue_test::{calibration, lengths, readings};
 use crate::support::rows::assert_says;
@@ -51,7 +52,7 @@ fn columns_decimal_sign_and_units_are_options() {
     // The same words in a calibration file.
     let keys = "length_unit = \"mm\"\ndecimal = \",\"\ncolumns = { cycles = \"B\", length = \"C\" }";
     fs::write(dir.path().join("fit.toml"), calibration("lab.txt", keys)).unwrap();
-    let (stdout, _) = done(dir.path(), &["calibrate", "fit.toml", "--out", "out", "--json"]);
+    let (stdout, _) = done(dir.path(), "calibrate fit.toml --out out --json");
     let object: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     assert!((object["paris_m"].as_f64().unwrap() - 3.0).abs() < 0.01, "{object}");
     for key in ["law", "misfit_at_ends", "left_out"] {
@@ -71,7 +72,7 @@ fn columns_decimal_sign_and_units_are_options() {
     ];
     for (keys, words) in wrong {
         fs::write(dir.path().join("wrong.toml"), calibration("lab.txt", keys)).unwrap();
-        assert_refused(&perilife(dir.path(), &["calibrate", "wrong.toml", "--out", "no"]), 2, &[words]);
+        assert_refused(&perilife(dir.path(), "calibrate wrong.toml --out no"), 2, &[words]);
     }
 }
 
@@ -114,15 +115,11 @@ fn rates_take_load_and_length_from_the_readings() {
 #[test]
 fn a_law_that_no_metal_has_is_marked() {
     let dir = folder(0.75, "megacycles;a (mm)", |_| 5.4, |n, a| format!("{n};{a}"));
-    let (stdout, stderr) = done(dir.path(), &["rates", "lab.txt", "--specimen", "ct.toml", "--json"]);
+    let (stdout, stderr) = done(dir.path(), "rates lab.txt --specimen ct.toml --json");
     assert!(stderr.contains("specimen lab: the rate at ΔK = 10 MPa√m is"), "{stderr}");
     let object: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     assert!(object["specimens"][0]["warnings"].to_string().contains("the range of metals"), "{object}");
-    assert_refused(
-        &perilife(dir.path(), &["calibrate", "ct.toml", "--out", "out"]),
-        2,
-        &["measured.files: implausible growth law"],
-    );
+    assert_refused(&perilife(dir.path(), "calibrate ct.toml --out out"), 2, &["measured.files: implausible growth law"]);
     assert!(!dir.path().join("out").exists());
 }
 
@@ -131,7 +128,7 @@ fn sides_that_differ_too_much_are_flagged() {
     // 0.25 B is 3 mm.
     for (apart, uneven) in [(2.9, false), (3.1, true)] {
         let dir = folder(0.75, "N;front (mm);back (mm)", |_| 5.4, |n, a| format!("{n};{};{}", a + apart / 2.0, a - apart / 2.0));
-        let (stdout, stderr) = done(dir.path(), &["rates", "lab.txt", "--specimen", "ct.toml"]);
+        let (stdout, stderr) = done(dir.path(), "rates lab.txt --specimen ct.toml");
         assert_eq!(stdout.contains("uneven_front"), uneven, "{apart}: {stdout}");
         assert_eq!(stderr.contains("exceed 3.00 mm (ASTM E647)"), uneven, "{apart}: {stderr}");
     }
@@ -160,10 +157,6 @@ fn names_like_formulas_are_text_in_tables() {
     assert_eq!(found, names);
 }
 
-/// Middle tension panels, W = 152.4 mm, Δσ = 48.28 MPa, R = 0.2.
-const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300\nthickness_mm = 2.54\ncrack_length_mm = 9\n\
-    [material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n[model]\nmethod = \"handbook\"\n";
-
 /// da/dN, mm/cycle, whose exponent rises from 2 in the middle of the range towards both ends; ΔK in MPa√m.
 fn curved_rate(delta_k: f64) -> f64 {
     let x = (delta_k / 14.0).ln();
@@ -188,10 +181,11 @@ fn curved_readings(names: &[(&str, f64)]) -> String {
 #[test]
 fn a_curve_that_was_fitted_is_drawn_and_gives_the_life() {
     let dir = tempdir().unwrap();
+    let panel = panel_without_law();
     let write = |name: &str, text: &str| fs::write(dir.path().join(name), text).unwrap();
     write("lot.csv", &curved_readings(&[("one", 1.02), ("two", 1.0), ("three", 0.98)]));
-    write("fit.toml", &format!("[measured]\nfiles = [\"lot.csv\"]\n{PANEL}"));
-    write("case.toml", &format!("{PANEL}[fatigue]\nfitted = \"fit/fitted.toml\"\n[stop]\ncrack_length_mm = 45\n"));
+    write("fit.toml", &format!("[measured]\nfiles = [\"lot.csv\"]\n{panel}"));
+    write("case.toml", &format!("{panel}[fatigue]\nfitted = \"fit/fitted.toml\"\n[stop]\ncrack_length_mm = 45\n"));
     let done = |arguments: &str| {
         let (stdout, _) = done(dir.path(), &arguments.split(' ').collect::<Vec<_>>());
         stdout
@@ -208,7 +202,7 @@ fn a_curve_that_was_fitted_is_drawn_and_gives_the_life() {
     // Beyond the readings there is no rate, and at another stress ratio no law.
     assert_eq!([row[2], row[5]], [""; 2]);
     assert!(fs::read_to_string(dir.path().join("law.svg")).unwrap().contains("fit/fitted.toml"));
-    let other = perilife(dir.path(), &["rates", "--materials", "fit/fitted.toml", "--stress-ratio", "0.1"]);
+    let other = perilife(dir.path(), "rates --materials fit/fitted.toml --stress-ratio 0.1");
     assert_refused(&other, 2, &["stress_ratio = 0.1", "0.2"]);
 
     done("predict case.toml --out run");

@@ -1,6 +1,5 @@
 //! The service as a client sees it.
 
-mod budget;
 mod crashes;
 mod denial;
 mod deploy;
@@ -40,6 +39,11 @@ pub const SLOW: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 70.0\nlength_mm
 pub fn tiny() -> String {
     const PARIS: &str = "growth_law = \"paris\"\nparis_c_mm_per_cycle = 1e-8\nparis_m = 2.86";
     QUICK.replace("spacing_mm = 1.5", "method = \"handbook\"").replace("a = 6450.0\np = 2.86\nhorizon_mm = 3.015", PARIS)
+}
+
+/// A calibration of the quick plate by the readings of `curve.csv`, with this model.
+pub fn test_of_quick(model: &str) -> String {
+    format!("[measured]\nfiles = [\"curve.csv\"]\n{}[model]\n{model}\n", QUICK.split_once("[model]").unwrap().0)
 }
 
 /// The body of a submission of TOML text.

@@ -55,10 +55,8 @@ fn check_and_predict_say_what_the_spectrum_is() {
     let wheeler = CASE.replace("spectrum_scale_mpa = 100.0\n", WHEELER);
     let (_, output) = run(&wheeler, "flights.csv", FLIGHTS, &["check", "case.toml", "-v"]);
     let (stdout, _) = texts(&output);
-    assert_says(
-        &stdout,
-        &["5 to 100 MPa", "flights.csv (cycles): 61 cycles a pass", "3 kinds", "repeated until failure", "wheeler"],
-    );
+    let words = ["5 to 100 MPa", "flights.csv (cycles): 61 cycles a pass", "3 kinds", "repeated until failure", "wheeler"];
+    assert_says(&stdout, &words);
     let mut lives = Vec::new();
     for case in [CASE, &wheeler] {
         let (dir, output) = run(case, "flights.csv", FLIGHTS, &["predict", "case.toml", "--out", "run"]);

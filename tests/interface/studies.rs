@@ -6,7 +6,7 @@ use serde_json::Value;
 use tempfile::tempdir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
-use crate::support::daily::{PANEL, names, write_inputs};
+use crate::support::daily::{PANEL, inputs, names};
 use crate::support::desk::done;
 
 // `perilife verify`.
@@ -16,7 +16,7 @@ use crate::support::desk::done;
 fn rows_are_written_as_markdown_and_as_json() {
     let dir = tempdir().unwrap();
     let tables = ["first.md", "second.md"].map(|file| {
-        let (stdout, _) = done(dir.path(), &["verify", "golden", "--json", "--markdown", file]);
+        let (stdout, _) = done(dir.path(), &format!("verify golden --json --markdown {file}"));
         let object: Value = serde_json::from_str(&stdout).expect("one JSON object and nothing else");
         let rows = object["rows"].as_array().unwrap();
         assert!(rows.len() >= 12, "{}", rows.len());
@@ -27,8 +27,8 @@ fn rows_are_written_as_markdown_and_as_json() {
     });
     assert!(tables[0].contains("\n## golden\n") && tables[0].contains("247200"), "{}", tables[0]);
     assert_eq!(tables[0], tables[1]);
-    assert_refused(&perilife(dir.path(), &["verify", "gold"]), 2, &["NAME", "gold", "golden_peridynamics"]);
-    assert_refused(&perilife(dir.path(), &["verify", "golden", "--json", "--markdown", "."]), 2, &["--markdown", "folder"]);
+    assert_refused(&perilife(dir.path(), "verify gold"), 2, &["NAME", "gold", "golden_peridynamics"]);
+    assert_refused(&perilife(dir.path(), "verify golden --json --markdown ."), 2, &["--markdown", "folder"]);
 }
 
 // `perilife validate`.
@@ -38,8 +38,7 @@ const SOURCE: &str = "[source]\ntitle = \"Panel\"\nreference = \"=1+1\"\nobtaine
 /// A built-in set and a folder of one's own, with two specimens, a path beside the line of the crack, and a case that fails beside them.
 #[test]
 fn own_tests_stand_beside_published_ones() {
-    let dir = tempdir().unwrap();
-    write_inputs(dir.path());
+    let dir = inputs();
     let put = |name: &str, text: &str| fs::write(dir.path().join("own").join(name), text).unwrap();
     fs::create_dir(dir.path().join("own")).unwrap();
     put("panel.toml", PANEL);
@@ -51,8 +50,7 @@ fn own_tests_stand_beside_published_ones() {
     let (stdout, _) = done(dir.path(), &call);
     let object: Value = serde_json::from_str(&stdout).expect("one JSON object and nothing else");
     let row = &object["rows"][0];
-    let run: Value =
-        serde_json::from_str(&texts(&perilife(dir.path(), &["predict", "panel.toml", "--json", "--out", "run"])).0).unwrap();
+    let run: Value = serde_json::from_str(&texts(&perilife(dir.path(), "predict panel.toml --json --out run")).0).unwrap();
     let near =
         |value: &Value, wanted: f64| assert!((value.as_f64().unwrap() / wanted - 1.0).abs() < 1e-9, "{value} for {wanted}");
     near(&row["measured"], 240_000.0);
@@ -90,12 +88,11 @@ fn own_tests_stand_beside_published_ones() {
 
 #[test]
 fn sets_that_cannot_be_read_are_refused_before_any_run() {
-    let dir = tempdir().unwrap();
-    write_inputs(dir.path());
+    let dir = inputs();
     let own = dir.path().join("own");
     fs::create_dir(&own).unwrap();
-    assert_refused(&perilife(dir.path(), &["validate", "nothing"]), 2, &["NAME", "nothing", "perilife list"]);
-    assert_refused(&perilife(dir.path(), &["validate", "own"]), 4, &["source.toml"]);
+    assert_refused(&perilife(dir.path(), "validate nothing"), 2, &["NAME", "nothing", "perilife list"]);
+    assert_refused(&perilife(dir.path(), "validate own"), 4, &["source.toml"]);
     let test = |more: &str| format!("{SOURCE}[[test]]\nkind = \"path\"\ncase = \"panel.toml\"\n{more}\n");
     for (text, words) in [
         (SOURCE.replace("licence", "license"), ["source.license", "licence"]),
@@ -110,11 +107,11 @@ fn sets_that_cannot_be_read_are_refused_before_any_run() {
         (test("path_mm = [[1, nan]]"), ["test[0]", "finite"]),
     ] {
         fs::write(own.join("source.toml"), &text).unwrap();
-        assert_refused(&perilife(dir.path(), &["validate", "own", "--out", "out"]), 2, &words);
+        assert_refused(&perilife(dir.path(), "validate own --out out"), 2, &words);
         assert!(!dir.path().join("out").exists());
     }
     fs::write(own.join("source.toml"), test("halves = 3").replace("[[test]]", "calibration = \"fit.toml\"\n[[test]]")).unwrap();
-    assert_refused(&perilife(dir.path(), &["validate", "own"]), 4, &["fit.toml"]);
+    assert_refused(&perilife(dir.path(), "validate own"), 4, &["fit.toml"]);
 }
 
 // `perilife chart`: files, columns, resumption, front. Speed itself is never asserted.
@@ -160,17 +157,12 @@ fn a_quick_scene_leaves_table_picture_and_summary() {
 }
 
 #[test]
-fn a_point_is_repeated_by_its_command() {
-    let dir = tempdir().unwrap();
-    let (stdout, _) = done(dir.path(), &["chart", "tension_plate", "--once", "--set", "model.spacing_mm=4"]);
-    assert!(stdout.contains("error") && stdout.contains("MB"), "{stdout}");
-}
-
-#[test]
 fn bad_calls_are_refused() {
     let dir = tempdir().unwrap();
     fs::create_dir(dir.path().join("other")).unwrap();
     fs::write(dir.path().join("other/notes.txt"), "mine").unwrap();
+    let (stdout, _) = done(dir.path(), "chart tension_plate --once --set model.spacing_mm=4");
+    assert!(stdout.contains("error") && stdout.contains("MB"), "a point is repeated by its command: {stdout}");
     let calls: [(&[&str], &[&str]); 6] = [
         (&["chart", "nothing"], &["nothing", "tension_plate", "hole_entered"]),
         (&["chart", "--once"], &["SCENE", "one scene"]),
@@ -201,7 +193,7 @@ fn runs_of_another_version_are_not_mixed_in() {
 #[test]
 fn a_sweep_is_written_as_table_and_pictures() {
     let dir = tempdir().unwrap();
-    let (stdout, _) = done(dir.path(), &["stability", "density_factor", "reading_count", "--quick", "--json", "--out", "map"]);
+    let (stdout, _) = done(dir.path(), "stability density_factor reading_count --quick --json --out map");
     let object: Value = serde_json::from_str(&stdout).expect("one JSON object and nothing else");
     let read = |name: &str| fs::read_to_string(dir.path().join("map").join(name)).unwrap();
     let table = read("stability.csv");
@@ -217,7 +209,7 @@ fn a_sweep_is_written_as_table_and_pictures() {
         assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n") && svg.contains("<rect"), "{picture}");
     }
     assert_eq!(read("boundaries.csv").lines().count(), 3);
-    assert_refused(&perilife(dir.path(), &["stability", "density"]), 2, &["NAME", "density", "density_factor"]);
-    let listed = perilife(dir.path(), &["list"]);
+    assert_refused(&perilife(dir.path(), "stability density"), 2, &["NAME", "density", "density_factor"]);
+    let listed = perilife(dir.path(), "list");
     assert!(texts(&listed).0.contains("stability NAME"));
 }

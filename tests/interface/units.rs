@@ -39,9 +39,9 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * a.abs().max(b.abs()) || a.abs().max(b.abs()) < 1e-12
 }
 
-/// A run of the program in `dir`; it ended well. All that it printed.
-fn run(dir: &Path, arguments: &[&str]) -> String {
-    let (stdout, stderr) = done(dir, arguments);
+/// A run of the program in `dir` by words; it ended well. All that it printed.
+fn run(dir: &Path, call: &str) -> String {
+    let (stdout, stderr) = done(dir, &call.split_whitespace().collect::<Vec<_>>());
     stdout + &stderr
 }
 
@@ -161,13 +161,12 @@ fn a_run_in_us_units_is_the_same_run() {
     let dir = tempdir().unwrap();
     let here = dir.path();
     for (case, flags) in [
-        ("hand_calculation.toml", vec!["--residual-strength", "--set", "material.toughness_mpa_sqrt_m=90"]),
-        ("corner_crack_at_hole.toml", vec!["--set", "stop.at_break_through=true"]),
+        ("hand_calculation.toml", "--residual-strength --set material.toughness_mpa_sqrt_m=90"),
+        ("corner_crack_at_hole.toml", "--set stop.at_break_through=true"),
     ] {
-        let case = root.join(case);
+        let case = root.join(case).display().to_string();
         for units in ["si", "us"] {
-            let arguments = [&["predict", case.to_str().unwrap(), "--out", units, "--units", units, "--force"], &*flags].concat();
-            let printed = run(here, &arguments);
+            let printed = run(here, &format!("predict {case} --out {units} --units {units} --force {flags}"));
             if units == "us" {
                 no_metric_unit_in(&printed, "predict");
             }
@@ -178,13 +177,13 @@ fn a_run_in_us_units_is_the_same_run() {
         assert_eq!(fs::read(here.join("si/case.toml")).unwrap(), fs::read(here.join("us/case.toml")).unwrap());
         for (folder, units) in [("si", "si"), ("si", "us"), ("us", "si"), ("us", "us")] {
             let [table, page] = ["csv", "html"].map(|ending| format!("{folder}_{units}.{ending}"));
-            run(here, &["export", folder, "--points", "20", "--out", &table, "--units", units]);
-            run(here, &["report", folder, "--out", &page, "--units", units]);
+            run(here, &format!("export {folder} --points 20 --out {table} --units {units}"));
+            run(here, &format!("report {folder} --out {page} --units {units}"));
         }
         same_table(&here.join("si_si.csv"), &here.join("si_us.csv"));
         // Where no units are asked for, an export has those of its run.
         for units in ["si", "us"] {
-            run(here, &["export", units, "--points", "20", "--out", "own.csv"]);
+            run(here, &format!("export {units} --points 20 --out own.csv"));
             let asked = here.join(format!("{units}_{units}.csv"));
             assert_eq!(fs::read(here.join("own.csv")).unwrap(), fs::read(asked).unwrap(), "{units}");
         }
@@ -207,46 +206,20 @@ fn other_commands_print_in_the_units_asked_for() {
     let [fit, panel] =
         ["calibration/al2024-t3/case.toml", "data/cases/hand_calculation.toml"].map(|file| root.join(file).display().to_string());
     let readings = root.join("calibration/al2024-t3/measured/virkler_median.csv").display().to_string();
-    let method = "model.method=\"handbook\"";
-    let set = ["--set", method];
-    for units in ["si", "us"] {
-        let calibrate = ["calibrate", &fit, "--out", units, "--units", units];
-        let without_spacing =
-            fs::read_to_string(&fit).unwrap().replace("[model]\nspacing_mm = 1.0", "[model]\nmethod = \"handbook\"");
-        let copy = here.join("fit.toml");
-        fs::write(&copy, without_spacing.replace("measured/virkler_median.csv", &readings)).unwrap();
-        let calibrate: Vec<&str> =
-            calibrate.iter().map(|word| if *word == fit { copy.to_str().unwrap() } else { word }).collect();
+    let text = fs::read_to_string(&fit).unwrap().replace("[model]\nspacing_mm = 1.0", "[model]\nmethod = \"handbook\"");
+    fs::write(here.join("fit.toml"), text.replace("measured/virkler_median.csv", &readings)).unwrap();
+    for (units, lengths) in [("si", "30:34:2"), ("us", "30mm:1.3385826771653544:2mm")] {
+        let points = "--method ring --set model.method=\"peridynamics\" --set specimen.crack_length_mm=30";
         let all = [
-            run(here, &calibrate),
-            run(
-                here,
-                &[
-                    "sif", &panel, "--method", "ring", "--units", units, "--set", "model.method=\"peridynamics\"", "--set",
-                    "specimen.crack_length_mm=30",
-                ],
-            ),
-            run(here, &[&["check", &panel, "--units", units][..], &set].concat()),
-            run(here, &["list", "material", "--units", units]).lines().filter(|line| line.contains("; E ")).collect::<String>(),
-            run(here, &["rates", &readings, "--specimen", &panel, "--units", units, "--out", &format!("rates_{units}.csv")]),
-            run(
-                here,
-                &[
-                    &[
-                        "sif",
-                        &panel,
-                        "--sweep",
-                        if units == "us" { "30mm:1.3385826771653544:2mm" } else { "30:34:2" },
-                        "--units",
-                        units,
-                        "--out",
-                        &format!("sweep_{units}.csv"),
-                    ][..],
-                    &["--beta", &format!("beta_{units}.csv")],
-                ]
-                .concat(),
-            ),
+            format!("calibrate fit.toml --out {units}"),
+            format!("sif {panel} {points}"),
+            format!("check {panel} --set model.method=\"handbook\""),
+            format!("rates {readings} --specimen {panel} --out rates_{units}.csv"),
+            format!("sif {panel} --sweep {lengths} --out sweep_{units}.csv --beta beta_{units}.csv"),
         ];
+        let mut all = all.map(|call| run(here, &format!("{call} --units {units}"))).to_vec();
+        let listed = run(here, &format!("list material --units {units}"));
+        all.push(listed.lines().filter(|line| line.contains("; E ")).collect());
         if units == "us" {
             all.iter().for_each(|printed| no_metric_unit_in(printed, "printed"));
         }
@@ -260,6 +233,6 @@ fn other_commands_print_in_the_units_asked_for() {
     let inline = "paris_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874";
     fs::write(here.join("panel.toml"), fs::read_to_string(&panel).unwrap().replace(inline, "fitted = \"us/fitted.toml\""))
         .unwrap();
-    let printed = run(here, &["check", "panel.toml"]);
+    let printed = run(here, "check panel.toml");
     assert!(printed.starts_with("panel.toml: valid input\n"), "{printed}");
 }

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use tempfile::{TempDir, tempdir};
+
 use crate::interface::cli::SMALL_CASE;
 
 /// A hand calculation of a millisecond.
@@ -44,6 +46,13 @@ pub fn write_inputs(folder: &Path) {
         ("sweep.toml", SWEEP.to_owned()),
     ];
     files.iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());
+}
+
+/// A folder with the inputs of all kinds.
+pub fn inputs() -> TempDir {
+    let dir = tempdir().unwrap();
+    write_inputs(dir.path());
+    dir
 }
 
 /// Every file below a folder with its content, links as what they point to in words.

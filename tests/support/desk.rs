@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
-use crate::interface::cli::{perilife, texts};
+use crate::interface::cli::{Call, perilife, texts};
 
 /// A folder with these files.
 pub fn desk(files: &[(&str, &dyn AsRef<[u8]>)]) -> TempDir {
@@ -17,10 +17,10 @@ pub fn desk(files: &[(&str, &dyn AsRef<[u8]>)]) -> TempDir {
 
 /// Standard output and standard error of a run that ends well.
 #[track_caller]
-pub fn done(folder: &Path, arguments: &[&str]) -> (String, String) {
-    let output = perilife(folder, arguments);
+pub fn done(folder: &Path, call: &(impl Call + ?Sized)) -> (String, String) {
+    let output = perilife(folder, call);
     let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {stderr}{stdout}");
+    assert_eq!(output.status.code(), Some(0), "{:?}: {stderr}{stdout}", call.words());
     (stdout, stderr)
 }
 

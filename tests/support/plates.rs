@@ -4,6 +4,7 @@ use std::path::Path;
 
 use perilife_base::error::Result;
 use perilife_growth::case::Case;
+use perilife_growth::predict::Prediction;
 use perilife_plate::specimen::Point;
 use perilife_study::cases::by_name;
 
@@ -48,6 +49,16 @@ pub fn try_case(specimen: &str, set: &[&str]) -> Result<Case> {
 /// [`try_case`] where the input is right.
 pub fn case(specimen: &str, set: &[&str]) -> Case {
     try_case(specimen, set).unwrap()
+}
+
+/// A run whose curve and pictures are in order.
+#[track_caller]
+pub fn sound(name: &str, run: &Prediction) {
+    for pair in run.curve.windows(2) {
+        assert!(pair[1].cycles >= pair[0].cycles && pair[1].crack_length >= pair[0].crack_length, "{name}");
+        assert!(pair[1].cycles.is_finite() && pair[1].crack_length.is_finite(), "{name}");
+    }
+    assert!(run.snapshots.iter().flat_map(|s| &s.displacement).flatten().all(|u| u.is_finite()), "{name}");
 }
 
 /// Material and law of plates whose cracks go by K.

@@ -19,6 +19,12 @@ pub fn assert_says(message: &str, words: &[impl AsRef<str>]) {
     words.iter().for_each(|words| assert!(message.contains(words.as_ref()), "{} in {message}", words.as_ref()));
 }
 
+/// A message holds all that ` | ` parts.
+#[track_caller]
+pub fn assert_holds(message: &str, words: &str) {
+    assert_says(message, &words.split(" | ").collect::<Vec<_>>());
+}
+
 /// A refusal in these words.
 #[track_caller]
 pub fn assert_refusal<T, E: ToString>(result: Result<T, E>, words: &[impl AsRef<str>]) {

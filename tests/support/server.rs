@@ -20,8 +20,26 @@ pub fn wait(what: &str, mut is_so: impl FnMut() -> bool) {
     let begun = Instant::now();
     while !is_so() {
         assert!(begun.elapsed() < PATIENCE, "{what}");
-        std::thread::sleep(Duration::from_millis(5));
+        std::thread::sleep(Duration::from_millis(10));
     }
+}
+
+/// Does something within so many seconds.
+#[track_caller]
+pub fn within<T>(seconds: u64, act: impl FnOnce() -> T) -> T {
+    let begun = Instant::now();
+    let done = act();
+    assert!(begun.elapsed() < Duration::from_secs(seconds), "{:?} for {seconds} s", begun.elapsed());
+    done
+}
+
+/// A form of parts: name, file name, content.
+pub fn multipart(parts: &[(&str, Option<&str>, &str)]) -> String {
+    let part = |(name, file, content): &(&str, Option<&str>, &str)| {
+        let file = file.map_or_else(String::new, |file| format!("; filename=\"{file}\""));
+        format!("--XX\r\nContent-Disposition: form-data; name=\"{name}\"{file}\r\n\r\n{content}\r\n")
+    };
+    parts.iter().map(part).collect::<String>() + "--XX--\r\n"
 }
 
 /// A running `perilife serve` (or `worker`), killed when dropped.
@@ -62,30 +80,29 @@ impl Answer {
 
 impl Server {
     /// Starts the service with a free port of this machine; `place` is `["--data", DIR]` or `["--database", URL]`.
-    pub fn start(place: &[&str], more: &[&str]) -> Server {
+    pub fn start(place: &[impl AsRef<str>], more: &[&str]) -> Server {
         Server::start_with(place, more, &[])
     }
 
     /// The same with variables of its environment.
-    pub fn start_with(place: &[&str], more: &[&str], variables: &[(&str, &str)]) -> Server {
-        let arguments = [&["serve", "--listen", "127.0.0.1:0"], place, more].concat();
-        let (process, line) = started(&arguments, variables);
+    pub fn start_with(place: &[impl AsRef<str>], more: &[&str], variables: &[(&str, &str)]) -> Server {
+        let door: &[&str] = if more.contains(&"--listen") { &[] } else { &["--listen", "127.0.0.1:0"] };
+        let (process, line) = started(&[&["serve"], door].concat(), place, more, variables);
         let url = line.rsplit(' ').next().unwrap_or_default().trim().to_owned();
-        assert!(url.starts_with("http://127.0.0.1:"), "{line}");
+        assert!(url.starts_with("http://"), "{line}");
         Server { process, url, agent: agent(), token: None }
     }
 
     /// Starts the service on a store in a folder of its own.
     pub fn alone(more: &[&str]) -> (tempfile::TempDir, Server) {
         let dir = tempfile::tempdir().unwrap();
-        let place = in_folder(dir.path());
-        let service = Server::start(&[&place[0], &place[1]], more);
+        let service = Server::start(&in_folder(dir.path()), more);
         (dir, service)
     }
 
     /// Starts a worker without a door.
-    pub fn worker(place: &[&str], more: &[&str]) -> Server {
-        let (process, line) = started(&[&["worker"], place, more].concat(), &[]);
+    pub fn worker(place: &[impl AsRef<str>], more: &[&str]) -> Server {
+        let (process, line) = started(&["worker"], place, more, &[]);
         assert!(line.starts_with("perilife worker"), "{line}");
         Server { process, url: String::new(), agent: agent(), token: None }
     }
@@ -123,6 +140,16 @@ impl Server {
         self.send("POST", path, &[("content-type", "application/json")], body.to_string().as_bytes())
     }
 
+    /// Sends a form: name, file name, content of its parts.
+    pub fn send_form(&self, path: &str, parts: &[(&str, Option<&str>, &str)]) -> Answer {
+        self.send("POST", path, &[("content-type", "multipart/form-data; boundary=XX")], multipart(parts).as_bytes())
+    }
+
+    /// Changes what is said of a job.
+    pub fn change(&self, job: &str, body: &Value) -> Answer {
+        self.send("PATCH", job, &[("content-type", "application/json")], body.to_string().as_bytes())
+    }
+
     /// Submits and returns the job's address.
     pub fn submit(&self, collection: &str, body: &Value) -> String {
         let job = self.post(&format!("/v1/{collection}"), body).expect(202).json();
@@ -131,20 +158,14 @@ impl Server {
 
     /// Waits until a job has ended.
     pub fn ended(&self, job: &str) -> Value {
-        let begun = Instant::now();
-        loop {
+        let mut found = Value::Null;
+        wait(job, || {
             // The service may be on its way back.
-            if let Ok(answer) = self.try_send("GET", job, &[], b"")
-                && answer.status == 200
-            {
-                let job = answer.json();
-                if !["queued", "running"].contains(&job["state"].as_str().unwrap()) {
-                    return job;
-                }
-            }
-            assert!(begun.elapsed() < PATIENCE, "{job} does not end");
-            std::thread::sleep(Duration::from_millis(20));
-        }
+            let answer = self.try_send("GET", job, &[], b"").ok().filter(|answer| answer.status == 200);
+            found = answer.map_or(Value::Null, |answer| answer.json());
+            found["state"].as_str().is_some_and(|state| !["queued", "running"].contains(&state))
+        });
+        found
     }
 
     /// Waits until a job has ended well.
@@ -164,10 +185,14 @@ impl Server {
 
     /// Asks for something and does not read the answer; the connection stays open as long as what is returned.
     pub fn ask_and_do_not_read(&self, path: &str) -> TcpStream {
-        let address = self.url.trim_start_matches("http://");
-        let mut stream = TcpStream::connect(address).unwrap();
+        self.connect(format!("GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n").as_bytes())
+    }
+
+    /// A connection over which these bytes were sent, as far as they are taken.
+    pub fn connect(&self, bytes: &[u8]) -> TcpStream {
+        let mut stream = TcpStream::connect(self.url.trim_start_matches("http://")).unwrap();
         stream.set_read_timeout(Some(PATIENCE)).unwrap();
-        write!(stream, "GET {path} HTTP/1.1\r\nHost: {address}\r\n\r\n").unwrap();
+        let _ = stream.write_all(bytes);
         stream
     }
 
@@ -234,9 +259,9 @@ impl Drop for Server {
 }
 
 /// Starts the program and returns what it says once it is ready.
-fn started(arguments: &[&str], variables: &[(&str, &str)]) -> (Child, String) {
+fn started(command: &[&str], place: &[impl AsRef<str>], more: &[&str], variables: &[(&str, &str)]) -> (Child, String) {
     let mut process = Command::new(cargo_bin("perilife"))
-        .args(arguments)
+        .args(command.iter().copied().chain(place.iter().map(AsRef::as_ref)).chain(more.iter().copied()))
         .env("RUST_LOG", "perilife=error")
         .envs(variables.iter().copied())
         .stdin(Stdio::null())

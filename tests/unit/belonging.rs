@@ -26,6 +26,10 @@ fn lines_of(readings: &[(f64, f64)], more: impl Fn(usize) -> String) -> String {
     readings.iter().enumerate().map(|(i, (n, a))| format!("{n},{a:.4}{}\n", more(i))).collect()
 }
 
+fn csv_of(readings: &[(f64, f64)]) -> String {
+    format!("cycles,crack_length_mm\n{}", lines_of(readings, |_| String::new()))
+}
+
 fn case(csv: &str, keys: &str) -> perilife_base::error::Result<CalibrationCase> {
     let files = BTreeMap::from([("test.csv".to_owned(), csv.as_bytes().to_vec())]);
     CalibrationCase::from_text(&calibration("test.csv", keys), "case", Folder::at_hand(files))
@@ -44,15 +48,7 @@ fn is_the_law(name: &str, fit: &Fit, m: f64) {
 fn k_of_every_reading_is_that_of_its_own_load() {
     let lengths = lengths(12.0, 30.0, 0.5);
     let step = |a: f64| if a > 21.0 { 6.48 } else { 5.4 };
-    let two_steps = |a: f64| {
-        if a > 24.0 {
-            4.5
-        } else if a > 17.0 {
-            6.3
-        } else {
-            5.4
-        }
-    };
+    let two_steps = |a: f64| [5.4, 6.3, 4.5][usize::from(a > 17.0) + usize::from(a > 24.0)];
     let shed = |a: f64| 5.4 * (-0.06 * (a - 12.0)).exp();
     let force: [(&str, &dyn Fn(f64) -> f64); 4] =
         [("constant", &|_| 6.0), ("a step", &step), ("two steps", &two_steps), ("shed", &shed)];
@@ -93,11 +89,11 @@ fn specimens_of_different_loads_have_one_law() {
 #[test]
 fn loads_without_columns_are_told_by_the_rates() {
     let made = readings(C, M, &lengths(12.0, 30.0, 0.5), |a| if a > 21.0 { 6.48 } else { 5.4 }, |_| 1.0);
-    let fit = fitted(&format!("cycles,crack_length_mm\n{}", lines_of(&made, |_| String::new())), "");
+    let fit = fitted(&csv_of(&made), "");
     let warning = fit.warnings.iter().find(|line| line.contains("rate changes in specimen")).unwrap();
     // 21 mm is the 19th reading, on line 20; a fifth more force is 1.728 times the rate.
     assert_says(warning, &["test.csv: lines 20 to 21: ", "above 21 mm it is 1.73 times", "force_max_kn"]);
-    let clean = fitted(&format!("cycles,crack_length_mm\n{}", lines_of(&plain(0.5), |_| String::new())), "");
+    let clean = fitted(&csv_of(&plain(0.5)), "");
     assert!(clean.warnings.is_empty(), "{:?}", clean.warnings);
 }
 
@@ -114,7 +110,7 @@ const STALLS: [Stall; 3] = [
 fn readings_that_do_not_belong_are_named_and_left_out() {
     for (name, slow, lines) in STALLS {
         let made = readings(C, M, &lengths(12.0, 30.0, 0.5), |_| 5.4, slow);
-        let csv = format!("cycles,crack_length_mm\n{}", lines_of(&made, |_| String::new()));
+        let csv = csv_of(&made);
         let fit = fitted(&csv, "");
         let warning = fit.warnings.iter().find(|line| line.contains("outliers")).unwrap_or_else(|| panic!("{name}"));
         assert!(warning.contains(lines), "{name}: {lines} in {warning}");
@@ -142,7 +138,7 @@ fn readings_that_do_not_belong_are_named_and_left_out() {
 #[test]
 fn what_is_left_out_stands_in_every_result() {
     let made = readings(C, M, &lengths(12.0, 30.0, 0.5), |_| 5.4, STALLS[1].1);
-    let csv = format!("cycles,crack_length_mm\n{}", lines_of(&made, |_| String::new()));
+    let csv = csv_of(&made);
     let (from, to) = (made[16].0, made[18].0);
     let keys = format!("leave_out = [{{ specimen = \"test\", from_cycles = {from}, to_cycles = {to}, reason = \"overload\" }}]");
     let case = case(&csv, &keys).unwrap();
@@ -172,27 +168,20 @@ fn rows_are_left_out_by_line_value_and_reason() {
     let out = "leave_out = [{ line = 5, value = \"abc\", reason = \"typing error\" }, { line = 9, value = \"12\", reason = \"counter\" }, \
                { line = 12, value = \"load cell was changed...\", reason = \"remark\" }]";
     let bad = case(&csv, out).unwrap();
-    let (fit, plain) =
-        (calibrate(&bad, &Silent).unwrap(), calibrate(&case(&text_with_header(&text), "").unwrap(), &Silent).unwrap());
+    let (fit, plain) = (calibrate(&bad, &Silent).unwrap(), calibrate(&case(&csv_of(&good), "").unwrap(), &Silent).unwrap());
     assert_eq!((fit.paris.m, fit.record.life_measured()), (plain.paris.m, plain.record.life_measured()));
     assert_eq!(report(&bad, &fit, 0.0)["left_out"][0]["value"], "abc");
     assert_eq!(bad.sources[0].sha256, perilife_base::input::sha256(csv.as_bytes()));
     let table = perilife_calibration::readings::readings(&bad, &bad.left_out, &|_| f64::NAN).csv();
     assert!(table.contains(",line 5: abc,typing error\n"), "{table}");
     let record = toml::to_string(&record(&bad, &fit)).unwrap();
-    assert!(
-        record.contains("line = 5\nvalue = \"abc\"\nreason = \"typing error\"") && !record.contains("from_cycles"),
-        "{record}"
-    );
-}
-
-fn text_with_header(rows: &str) -> String {
-    format!("cycles,crack_length_mm\n{rows}")
+    assert!(record.contains("line = 5\nvalue = \"abc\"\nreason = \"typing error\""), "{record}");
+    assert!(!record.contains("from_cycles"), "{record}");
 }
 
 #[test]
 fn broken_windows_are_refused() {
-    let csv = format!("cycles,crack_length_mm\n{}", lines_of(&plain(0.5), |_| String::new()));
+    let csv = csv_of(&plain(0.5));
     for [keys, words] in rows::<Vec<[String; 2]>>("belonging", "windows") {
         let error = case(&csv, &format!("leave_out = [{{ {keys} }}]")).unwrap_err();
         assert_eq!(error.exit_code(), 2, "{keys}");
@@ -205,7 +194,7 @@ fn broken_windows_are_refused() {
 fn misfit_is_told_at_both_ends() {
     let fit = |m: f64| {
         let made = readings(C * 10_f64.powf(M - m), m, &lengths(12.0, 30.0, 0.5), |_| 5.4, |_| 1.0);
-        let csv = format!("cycles,crack_length_mm\n{}", lines_of(&made, |_| String::new()));
+        let csv = csv_of(&made);
         let files = BTreeMap::from([("test.csv".to_owned(), csv.into_bytes())]);
         let text = calibration("test.csv", "") + "[fit]\nparameters = [\"a\"]\np = 3.0\n";
         let case = CalibrationCase::from_text(&text, "case", Folder::at_hand(files)).unwrap();
@@ -228,7 +217,7 @@ fn misfit_is_told_at_both_ends() {
 
 #[test]
 fn a_law_that_no_metal_has_is_refused_by_name() {
-    let csv = format!("cycles,crack_length_mm\n{}", lines_of(&plain(0.5), |_| String::new()));
+    let csv = csv_of(&plain(0.5));
     let slips =
         [("as it was", csv.clone(), true), ("single cycles called millions", csv.replace("cycles,", "megacycles,"), false)];
     for (name, csv, is_metal) in slips {

@@ -91,7 +91,6 @@ fn files_are_counted_as_they_are_asked_for() {
     for model in ["spacing_mm = 0.5", "method = \"element_free_galerkin\", nodes = 2000"] {
         let [without, with] = ["", asked].map(|more| needs::of_case(&case(SQUARE, &format!("model = {{ {model} }}\n{more}"))));
         let of_point = (with.disk_bytes - without.disk_bytes) / with.points;
-        println!("{model}: {:.0} and {:.0} bytes", without.disk_bytes, with.disk_bytes);
         assert!(of_point > 1000.0 && without.disk_bytes < 5e6, "{model}: {of_point}");
     }
     let [without, with] = ["", asked].map(|more| scene("spacing_mm = 0.5", more).budget().disk_bytes);

@@ -1,8 +1,5 @@
 //! Calibration files: what they give, and what is wrong with broken ones.
 
-use std::fs;
-use std::path::Path;
-
 use crate::support::desk::desk;
 use crate::support::fits::report;
 use crate::support::rows::{assert_refusal, rows};
@@ -80,12 +77,9 @@ fn results_have_every_promised_key_and_read_back() {
     let lines: Vec<&str> = csv.lines().collect();
     assert_eq!(lines[0], "specimen,crack_length_mm,cycles_measured,cycles_fitted");
     assert_eq!(lines.len(), 1 + 3 * 5, "two specimens and their median:\n{csv}");
-    assert!(
-        lines[1].starts_with("A,9.000000000,0,0")
-            && lines[6].starts_with("B,9.000000000,0,0")
-            && lines[11].starts_with("median,9.000000000,0,0"),
-        "{csv}"
-    );
+    for (line, name) in [(1, "A"), (6, "B"), (11, "median")] {
+        assert!(lines[line].starts_with(&format!("{name},9.000000000,0,0")), "{csv}");
+    }
 }
 
 #[test]
@@ -106,19 +100,6 @@ fn broken_calibration_files_say_what_would_be_right() {
     let error = read(&GOOD.replace("curves.csv", "elsewhere.csv"), &[]).unwrap_err();
     assert_eq!(error.exit_code(), 4);
     assert!(error.to_string().contains("elsewhere.csv: cannot read"), "{error}");
-}
-
-#[test]
-fn every_committed_calibration_can_be_read() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration");
-    let mut count = 0;
-    for folder in fs::read_dir(root).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
-        let calibration = CalibrationCase::from_file(&folder.join("case.toml"), &[]).unwrap();
-        assert!(!calibration.curves.is_empty());
-        assert!(folder.join("README.md").is_file(), "{} says where its curves come from", folder.display());
-        count += 1;
-    }
-    assert!(count >= 1);
 }
 
 #[test]
@@ -159,14 +140,10 @@ fn readings_say_load_and_first_crack_length_where_the_file_does_not() {
     };
     let load = "loading: stress_max_mpa = 60.35, stress_ratio = 0.2, from the readings";
     let edge = open.replace("\"middle_tension\"", "\"double_edge_tension\"");
+    let whole = open.replace("from_crack_length_mm = 9.0\n", "").replace("to_crack_length_mm = 13.0\n", "");
     for (text, head, first, words) in [
         (&edge, "crack_length_mm", 9.0, "9 mm, from the first reading"),
-        (
-            &open.replace("from_crack_length_mm = 9.0\n", "").replace("to_crack_length_mm = 13.0\n", ""),
-            "2a (mm)",
-            4.0,
-            "4 mm, from the first reading (half of the tip-to-tip length)",
-        ),
+        (&whole, "2a (mm)", 4.0, "4 mm, from the first reading (half of the tip-to-tip length)"),
     ] {
         let read = read(text, head, "60.35").unwrap();
         let specimen = &read.case.specimen;
@@ -174,18 +151,13 @@ fn readings_say_load_and_first_crack_length_where_the_file_does_not() {
         for words in [load, words] {
             assert!(read.warnings.iter().any(|line| line.contains(words)), "{words}: {:?}", read.warnings);
         }
-        assert!(
-            read.input.contains_key("loading") && read.input["specimen"].get("crack_length_mm").is_some(),
-            "{:?}",
-            read.input
-        );
+        let is_whole = read.input.contains_key("loading") && read.input["specimen"].get("crack_length_mm").is_some();
+        assert!(is_whole, "{:?}", read.input);
     }
     // Half of the length or all of it: nothing says.
     for kind in ["middle_tension", "cruciform"] {
-        assert_refusal(
-            read(&open.replace("middle_tension", kind), "crack_length_mm", "60.35"),
-            &["specimen.crack_length_mm: is missing"],
-        );
+        let read = read(&open.replace("middle_tension", kind), "crack_length_mm", "60.35");
+        assert_refusal(read, &["specimen.crack_length_mm: is missing"]);
     }
     assert_refusal(read(&edge, "crack_length_mm", "50"), &["loading: is missing"]);
     // What the readings could give is missing because they are not understood: that is said.

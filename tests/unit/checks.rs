@@ -42,10 +42,8 @@ fn strengths_that_are_not_given_are_not_checked() {
     assert_eq!(open.len(), 1 + checks.iter().filter(|check| check.verdict != Verdict::Passed).count(), "none is dropped");
     // Given, they hold: the life ends where one is reached.
     let (case, run) = (hand_case(PANEL, &STRENGTHS), hand_run(PANEL, &STRENGTHS));
-    assert_eq!(
-        named(&case, &run, "ligament").words,
-        "Net-section yield: load up to 100 % of the plastic collapse load (100 % ends the life)"
-    );
+    let found = named(&case, &run, "ligament").words;
+    assert_eq!(found, "Net-section yield: load up to 100 % of the plastic collapse load (100 % ends the life)");
     assert_eq!(named(&case, &run, "toughness").verdict, Verdict::Passed);
     // With a required strength the life ends before.
     let required = [STRENGTHS[0], STRENGTHS[1], "stop.limit_load_factor=1.5"];
@@ -195,15 +193,10 @@ fn small_scale_yielding_fails_where_it_does_not_hold_at_the_start() {
         let set = ["material.yield_strength_mpa=345", range];
         let (case, run) = (hand_case(PANEL, &set), hand_run(PANEL, &set));
         let check = named(&case, &run, "small_scale_yielding");
-        assert_eq!(
-            (check.verdict, check.effect_percent, run.life_cycles() > 0.0),
-            (Verdict::Failed, Some(100.0), life),
-            "{check:?}"
-        );
-        assert!(
-            check.words.contains("from the start (a = 9.0 mm)") && validity(&of_run(&case, &run)) == Validity::NotValid,
-            "{check:?}"
-        );
+        let found = (check.verdict, check.effect_percent, run.life_cycles() > 0.0);
+        assert_eq!(found, (Verdict::Failed, Some(100.0), life), "{check:?}");
+        assert!(check.words.contains("from the start (a = 9.0 mm)"), "{check:?}");
+        assert!(validity(&of_run(&case, &run)) == Validity::NotValid, "{check:?}");
         let why = perilife_growth::predict::error_estimate::error_estimate(&case, &run);
         assert!(why.is_ok() == life && (life || why == Err("no life".to_owned())), "{why:?}");
     }
@@ -272,10 +265,8 @@ fn the_plastic_zone_is_told_and_warned_about() {
     let line = plane_warning(&hand_case(PANEL, &strain), &hand_run(PANEL, &strain).curve).unwrap();
     assert!(line.contains("plane strain at the tip needs a thickness of 6.5"), "{line}");
     // Without a yield strength nothing is known.
-    assert!(
-        plastic_zone(&hand_case(PANEL, &[]), &run.curve).is_none()
-            && made_up_run::result(&hand_case(PANEL, &[]), &run)["plastic_zone"].is_null()
-    );
+    assert!(plastic_zone(&hand_case(PANEL, &[]), &run.curve).is_none());
+    assert!(made_up_run::result(&hand_case(PANEL, &[]), &run)["plastic_zone"].is_null());
 }
 
 /// A crack of 1.5 mm at the hole of a lug whose ligament is 13.5 mm, less what the chords of its head take: the crack is what is too short, until it has grown.

@@ -75,15 +75,9 @@ fn far_extrapolation_is_refused_unless_allowed_but_kept() {
     case.law = made_up_case::fitted(0.5, 1.0);
     let error = keep(&case, made_up_run::prediction(0.0), &dir.path().join("run")).unwrap_err();
     assert_eq!(error.exit_code(), 2);
-    assert!(
-        error.to_string().contains("0.50 to 1.00 MPa√m") && error.to_string().contains("allow_extrapolation = true"),
-        "{error}"
-    );
+    assert_says(&error.to_string(), &["0.50 to 1.00 MPa√m", "allow_extrapolation = true"]);
     // What it cost is kept, and marked.
-    let refused = || {
-        let text = fs::read_to_string(dir.path().join("run/result.json")).unwrap();
-        serde_json::from_str::<serde_json::Value>(&text).unwrap()["refused"].as_str().map(str::to_owned)
-    };
+    let refused = || json(dir.path().join("run/result.json"))["refused"].as_str().map(str::to_owned);
     assert!(refused().unwrap().contains("above the tested ΔK"));
     case.allow_extrapolation = true;
     keep(&case, made_up_run::prediction(0.0), &dir.path().join("run")).unwrap();
@@ -132,17 +126,17 @@ fn the_list_misses_no_kind() {
     assert!(keys > 20, "the test reads the sources: {keys} keys");
 }
 
-/// Every shipped case passes, with a picture; a picture that cannot be written leaves nothing behind.
+/// Every shipped case passes, with a picture, and opens with its question; a picture that cannot be written leaves nothing behind.
 #[test]
 fn shipped_cases_pass() {
     let folder = tempdir().unwrap();
-    let files = ["/data/cases", "/data/cases/fracture", "/data/sweeps"].into_iter().filter_map(|below| {
-        Some(fs::read_dir(format!("{}{below}", env!("CARGO_MANIFEST_DIR"))).ok()?.map(|entry| entry.unwrap().path()))
-    });
-    let is_toml = |file: &PathBuf| file.extension().is_some_and(|extension| extension == "toml");
-    let files: Vec<PathBuf> = files.flatten().filter(is_toml).collect();
-    assert!(files.len() > 2);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let of = |below: &str| fs::read_dir(root.join(below)).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>();
+    let files = ["data/cases", "data/cases/fracture", "data/sweeps"].map(of).concat().into_iter();
+    let files: Vec<PathBuf> = files.filter(|file| file.extension().is_some_and(|extension| extension == "toml")).collect();
+    assert!(files.len() > 20);
     for (number, file) in files.into_iter().enumerate() {
+        assert!(fs::read_to_string(&file).unwrap().starts_with("# "), "{}", file.display());
         let picture = folder.path().join("picture.svg");
         let args = check::Args { file, picture: Some(picture.clone()), set: vec![], console: QUIET };
         check::run(&args).unwrap();
@@ -155,14 +149,15 @@ fn shipped_cases_pass() {
     }
 }
 
-/// The measured files of a calibration are read and checked, and the case of it is.
+/// The measured files of a calibration are read and checked, and the case of it is; a page says where its curves come from.
 #[test]
 fn shipped_calibrations_pass() {
     for entry in fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/calibration")).unwrap() {
-        let file = entry.unwrap().path().join("case.toml");
-        if file.is_file() {
-            let args = check::Args { file, picture: None, set: vec![], console: QUIET };
+        let folder = entry.unwrap().path();
+        if folder.is_dir() {
+            let args = check::Args { file: folder.join("case.toml"), picture: None, set: vec![], console: QUIET };
             check::run(&args).unwrap();
+            assert!(folder.join("README.md").is_file(), "{}", folder.display());
             let set = vec!["measured.files=[\"nowhere.csv\"]".to_owned()];
             assert_eq!(check::run(&check::Args { set, ..args }).unwrap_err().exit_code(), 4);
         }

@@ -32,7 +32,6 @@ fn quantiles(fleet: &FleetLives) -> [f64; 3] {
 fn a_fleet_that_differs_in_its_law_alone_has_the_quantiles_of_the_band() {
     let (drawn, band) = fleet(&panel(5, &[]), &ALIKE, None);
     let (found, wanted) = (quantiles(&drawn), band.life().unwrap());
-    println!("{found:?} beside {wanted:?}");
     assert!(drawn.one_law.is_none() && (0..3).all(|k| (found[k] / wanted[k] - 1.0).abs() < 0.02), "{found:?} beside {wanted:?}");
     // A faster law has the shorter life.
     let product = |plate: &perilife_calibration::sweep::fleet::FleetPlate| plate.rate_factor * plate.life.cycles;
@@ -145,7 +144,6 @@ fn a_thousand_plates_take_less_than_a_second() {
     let (begun, why) = (std::time::Instant::now(), "one law".to_owned());
     lives(&case, &run, &many, Err(&why), Some(looks)).unwrap();
     let rate = 4000.0 / begun.elapsed().as_secs_f64();
-    println!("{rate:.0} lives a second");
     assert!(rate > 1000.0, "{rate}");
 }
 

@@ -81,17 +81,14 @@ fn a_table_is_straight_in_logarithms() {
     // Compression counts as nothing; beyond the ratios those of the nearest one, said.
     near(two.rate(7.0 * MPA_SQRT_M, -0.5), two.rate(7.0 * MPA_SQRT_M, 0.0), 1e-15);
     near(two.rate(30.0 * MPA_SQRT_M, 0.6), 8.0e-10 * 12.0_f64.powi(3), 1e-12);
+    let [held, with_gamma] = [None, Some(0.5)].map(|gamma| Table::new(one.curves.clone(), false, gamma, true));
     for (table, ratio, words) in [
         (&two, 0.51, None),
         (&two, -0.5, None),
         (&one, 0.6, None),
         (&two, 0.6, Some("above 0 to 0.5, the ratios of the table of rates; rates of R = 0.5 used (non-conservative)")),
-        (
-            &Table::new(one.curves.clone(), false, None, true),
-            -0.1,
-            Some("below 0.1, the ratio of the table of rates; rates of R = 0.1 used (conservative)"),
-        ),
-        (&Table::new(one.curves.clone(), false, Some(0.5), true), 0.6, None),
+        (&held, -0.1, Some("below 0.1, the ratio of the table of rates; rates of R = 0.1 used (conservative)")),
+        (&with_gamma, 0.6, None),
     ] {
         let said = table.beyond_ratio(ratio);
         assert_eq!(said.as_deref().map(|said| said.split_once(" is ").unwrap().1), words, "{said:?}");
@@ -118,10 +115,8 @@ fn a_table_may_have_negative_ratios() {
         let LawSource::Factor(law) = &case.law else { panic!() };
         near(law.rate(10.0 * MPA_SQRT_M, ratio) / MM_PER_CYCLE, rate, 1e-9);
         let said = case.warnings.join("\n");
-        assert!(
-            said.contains(words) && said.contains("(non-conservative)") != words.is_empty() && !said.contains("is ignored"),
-            "{ratio}: {said}"
-        );
+        assert!(said.contains(words) && said.contains("(non-conservative)") != words.is_empty(), "{ratio}: {said}");
+        assert!(!said.contains("is ignored"), "{ratio}: {said}");
     }
 }
 

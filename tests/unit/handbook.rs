@@ -151,18 +151,12 @@ fn a_wrong_law_is_refused_with_the_right_one() {
         let set: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
         Case::from_toml(text, "hand", Path::new("."), &set)
     };
+    let steep = [&bonds[..], &["fatigue.p=9"]].concat();
+    let of_bonds = vec!["model.method=peridynamics", "fatigue.driver=bond_strain", "fatigue.paris_m=8.5"];
     let rows: [(String, Vec<&str>, &[&str]); 6] = [
         // What one kind of law means for the other is known for usual exponents.
-        (
-            only_bonds(&text),
-            [&bonds[..], &["fatigue.p=9"]].concat(),
-            &["fatigue.p = 9", "1 to 8", "paris_c_mm_per_cycle and paris_m"],
-        ),
-        (
-            text.clone(),
-            vec!["model.method=peridynamics", "fatigue.driver=bond_strain", "fatigue.paris_m=8.5"],
-            &["fatigue.paris_m = 8.5", "1 to 8"],
-        ),
+        (only_bonds(&text), steep, &["fatigue.p = 9", "1 to 8", "paris_c_mm_per_cycle and paris_m"]),
+        (text.clone(), of_bonds, &["fatigue.paris_m = 8.5", "1 to 8"]),
         (text.replace("paris_m = 3\n", ""), vec![], &["fatigue.paris_m", "missing", "together"]),
         (text.clone(), vec!["fatigue.fitted=fitted.toml"], &["fatigue.paris_c_mm_per_cycle", "conflicts with fatigue.fitted"]),
         (only_bonds(&text), vec![], &["fatigue.fitted", "no fatigue law", "paris_c_mm_per_cycle and paris_m"]),
@@ -188,10 +182,8 @@ fn only_specimens_of_the_handbook_are_taken() {
     for (specimen, set) in [(plate, ""), (clamped.as_str(), ""), (PANEL, "specimen.length_mm=160")] {
         let set: Vec<&str> = [set].into_iter().filter(|set| !set.is_empty()).collect();
         let error = try_hand_case(specimen, &set).unwrap_err();
-        assert_says(
-            &error.to_string(),
-            &["model.method = \"handbook\"", "no K(a)", "remove it (nodes find K)", "compact_tension"],
-        );
+        let said = error.to_string();
+        assert_says(&said, &["model.method = \"handbook\"", "no K(a)", "remove it (nodes find K)", "compact_tension"]);
         assert_eq!(error.exit_code(), 2);
     }
     // What stops bonds does not stop hand calculation: steep Poisson's ratio, a crack shorter than any spacing would resolve.
@@ -214,8 +206,6 @@ fn a_record_gives_c_and_m_whatever_bonds_it_was_fitted_with() {
     (by_hand.method, by_hand.a, by_hand.horizon_mm, by_hand.rate_constant) = ("handbook".to_owned(), f64::NAN, f64::NAN, None);
     hand_case(PANEL, &set).with_law(by_hand.clone()).unwrap();
     let bonds = ["model.method=peridynamics", "fatigue.driver=bond_strain"];
-    assert_refusal(
-        hand_case(PANEL, &[&bonds[..], &set].concat()).with_law(by_hand),
-        &["no bond constant A", "driver = \"tip_field\""],
-    );
+    let refused = hand_case(PANEL, &[&bonds[..], &set].concat()).with_law(by_hand);
+    assert_refusal(refused, &["no bond constant A", "driver = \"tip_field\""]);
 }

@@ -117,10 +117,8 @@ fn encodings_of_spreadsheets_are_read() {
     for (name, bytes) in dresses {
         all_are_the_curve(name, parse(&bytes, Path::new("lab.csv"), &plain()), 1);
     }
-    assert_refusal(
-        parse(b"cycles,a_mm\n\x00\x01\x02\x03\x04\x05\x06,1\n", Path::new("x.csv"), &plain()),
-        &["x.csv:2: is not text"],
-    );
+    let refused = parse(b"cycles,a_mm\n\x00\x01\x02\x03\x04\x05\x06,1\n", Path::new("x.csv"), &plain());
+    assert_refusal(refused, &["x.csv:2: is not text"]);
 }
 
 #[test]
@@ -152,10 +150,8 @@ fn a_wide_table_holds_lengths_alone() {
     let rows = "0;12.8;11.2;6\n10;13.3;11.7;6\n20;13.8;12.2;6\n30;14.3;12.7;6\n40;14.8;13.2;6\n";
     for other in ["Pmax", "Pmax (kN)", "K (MPa√m)", "COD (mm)", "Time (s)", "Temperature", "B", "W (mm)", "Load", "R", "da/dN"]
     {
-        assert_says(
-            &refused(&format!("Cycles;S1;S2;{other}\n{rows}"), &in_mm()),
-            &["lab.csv:1: header = S1", "measured.columns"],
-        );
+        let said = refused(&format!("Cycles;S1;S2;{other}\n{rows}"), &in_mm());
+        assert_says(&said, &["lab.csv:1: header = S1", "measured.columns"]);
         // Two sides are one specimen, and the other quantity is none.
         let measured = read(&format!("Cycles;Front;Back;{other}\n{rows}"), &in_mm()).unwrap();
         assert_eq!(measured.curves.len(), 1, "{other}");
@@ -236,15 +232,11 @@ fn workbooks_are_read_by_sheet() {
     for name in ["data", "A &amp; B"] {
         let book = workbook_hiding(&[(name, rows.clone())], &[5], hidden);
         let told = all_are_the_curve(name, of(&book, None), 1).warnings.join("\n");
-        assert_says(
-            &told,
-            &["1 of 7 rows excluded: hidden in the workbook (line 5)", "hidden columns are used: a (mm), Time (s)"],
-        );
+        let words = ["1 of 7 rows excluded: hidden in the workbook (line 5)", "hidden columns are used: a (mm), Time (s)"];
+        assert_says(&told, &words);
     }
-    assert_refusal(
-        of(&workbook_hiding(&[("data", rows)], &[2, 3, 4, 5, 6, 7, 8], ""), None),
-        &["has no usable row: each is hidden in the workbook; unhide them"],
-    );
+    let refused = of(&workbook_hiding(&[("data", rows)], &[2, 3, 4, 5, 6, 7, 8], ""), None);
+    assert_refusal(refused, &["has no usable row: each is hidden in the workbook; unhide them"]);
 }
 
 #[test]

@@ -53,16 +53,12 @@ fn truths() -> Vec<Truth> {
     let forman = kind("forman").0.of([6e-6, 2.7, 62.0].into_iter());
     let [c, n, p, q, alpha, s, threshold, c_th, k_c] = NASGRO.map(|(_, value)| value);
     let nasgro = kind("nasgro").0.of([c, n, p, q, alpha, s, threshold, c_th, 0.0, k_c].into_iter());
+    let of_forman = [("forman_c_mm_per_cycle", 6e-6), ("forman_m", 2.7), ("k_c_mpa_sqrt_m", 62.0)];
     let c_m = [("paris_c_mm_per_cycle", 1e-8), ("paris_m", 3.1)];
     vec![
         (kind("paris"), of(1.0), c_m.to_vec(), 50.0),
         (kind("walker"), of(0.45), [&c_m[..], &[("walker_gamma", 0.45)]].concat(), 50.0),
-        (
-            kind("forman"),
-            Box::new(forman),
-            vec![("forman_c_mm_per_cycle", 6e-6), ("forman_m", 2.7), ("k_c_mpa_sqrt_m", 62.0)],
-            59.0,
-        ),
+        (kind("forman"), Box::new(forman), of_forman.to_vec(), 59.0),
         (kind("nasgro"), Box::new(nasgro), NASGRO.to_vec(), 68.0),
     ]
 }
@@ -153,11 +149,7 @@ fn what_rates_do_not_tell_is_named() {
         (&one_ratio, fit_by("walker"), "walker_gamma cannot be determined: all rates are at one stress ratio, R = 0.100"),
         (&one_ratio, fit_by("nasgro"), "nasgro_alpha, nasgro_c_th cannot be determined: all rates are at one stress ratio"),
         (&one_ratio, fit_by("forman"), "k_c_mpa_sqrt_m cannot be determined"),
-        (
-            &straight,
-            fit_by("forman"),
-            "k_c_mpa_sqrt_m cannot be determined: best fit at the limit of its range, 19 times the largest K_max",
-        ),
+        (&straight, fit_by("forman"), "k_c_mpa_sqrt_m cannot be determined: best fit at the limit of its range, 19 times the "),
         (&middle, fit_by("nasgro"), "cannot be determined"),
     ];
     for (text, law, words) in cases {
@@ -191,12 +183,7 @@ fn a_factor_that_no_rate_tells_is_left_out() {
     let given = |k_c: f64| Given::from([("k_c_mpa_sqrt_m".to_owned(), k_c)]);
     let kept = fit_laws(&rows(&near_threshold), fit_by("nasgro"), &given(500.0)).unwrap();
     assert_eq!(constant(kept.law(), "k_c_mpa_sqrt_m").0, 500.0);
-    assert!(
-        fit_laws(&rows(&near_threshold), fit_by("nasgro"), &given(5.0))
-            .unwrap_err()
-            .to_string()
-            .contains("is below the tested K_max")
-    );
+    assert_refusal(fit_laws(&rows(&near_threshold), fit_by("nasgro"), &given(5.0)), &["is below the tested K_max"]);
 }
 
 /// What rates do not tell can be given, and then it is not a constant of the fit.
@@ -209,10 +196,8 @@ fn constants_can_be_given() {
     let (n, error) = constant(fits.law(), "nasgro_n");
     assert!((n - 3.2).abs() < 3.0 * error && error < 0.05, "n {n} ± {error}");
     assert_eq!(fits.law().fitted, 2);
-    assert_refusal(
-        fit_laws(&rows(&text), fit_by("nasgro"), &Given::from([("k_c_mpa_sqrt_m".to_owned(), 20.0)])),
-        &["is below the tested K_max = 25.000"],
-    );
+    let low = Given::from([("k_c_mpa_sqrt_m".to_owned(), 20.0)]);
+    assert_refusal(fit_laws(&rows(&text), fit_by("nasgro"), &low), &["is below the tested K_max = 25.000"]);
 }
 
 /// Neighbouring rates of a parabola share readings: they count as fewer, and errors grow.
@@ -318,6 +303,7 @@ fn tables_come_in_one_file_or_one_a_ratio() {
 fn wrong_files_say_what_would_be_right() {
     let good = "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,stress_ratio\n10,1e-5,0.1\n12,2e-5,0.1\n14,3e-5,0.5\n16,4e-5,0.5\n";
     let all = "[measured]\nrates = [\"r.csv\"]\n";
+    let of_ratio = "[measured]\nrates = [{ file = \"r.csv\", stress_ratio = 0.1 }]\n";
     let cases = [
         (all.to_owned(), good.replace("12,", "x,"), "r.csv:3: delta_k_mpa_sqrt_m = x: is not a number"),
         (all.to_owned(), good.replace("2e-5", "-2e-5"), "r.csv:3: da_dn_mm_per_cycle = -2e-5: is not above zero"),
@@ -325,11 +311,7 @@ fn wrong_files_say_what_would_be_right() {
         (all.to_owned(), good.replace(",stress_ratio", ",x"), "is not a column, and no stress_ratio is set for the file"),
         (all.to_owned(), good.replace("delta_k_mpa", "kk_mpa"), "has no columns delta_k_mpa_sqrt_m and da_dn_mm_per_cycle"),
         (all.to_owned(), good.replace("12,", ","), "`perilife rates --specimen CASE.toml` computes it"),
-        (
-            "[measured]\nrates = [{ file = \"r.csv\", stress_ratio = 0.1 }]\n".to_owned(),
-            good.to_owned(),
-            "is a column, and stress_ratio = 0.1",
-        ),
+        (of_ratio.to_owned(), good.to_owned(), "is a column, and stress_ratio = 0.1"),
         (format!("{all}[fit]\nlaw = \"pariss\"\n"), good.to_owned(), "unknown kind"),
         (format!("{all}[fit]\ngiven = {{ nasgro_c = 1 }}\n"), good.to_owned(), "fit.given.nasgro_c = 1: is not a constant"),
         (format!("{all}[fit]\ngiven = {{ nasgro_alpha = 4 }}\n"), good.to_owned(), "fit.given.nasgro_alpha = 4"),

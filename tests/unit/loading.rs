@@ -23,12 +23,9 @@ fn case(specimen: &str, loading: &str) -> Result<Case, perilife_base::error::Err
 #[test]
 fn every_way_to_say_the_same_load() {
     // 50 MPa on 100 x 2 mm² = 10 kN; range = maximum (1 - R).
-    let ways = [
-        "stress_max_mpa = 50", "stress_range_mpa = 40", "force_max_n = 10000", "force_range_n = 8000", "force_max_kn = 10",
-        "force_range_kn = 8",
-    ];
-    for way in ways {
-        let loading = case(PANEL, &format!("{way}\nstress_ratio = 0.2")).unwrap().loading;
+    let ways = "stress_max_mpa 50, stress_range_mpa 40, force_max_n 10000, force_range_n 8000, force_max_kn 10, force_range_kn 8";
+    for way in ways.split(", ") {
+        let loading = case(PANEL, &format!("{}\nstress_ratio = 0.2", way.replace(' ', " = "))).unwrap().loading;
         assert!((loading.maximum / 50e6 - 1.0).abs() < 1e-12, "{way}: {loading:?}");
     }
 }
@@ -46,9 +43,8 @@ fn range_of_a_reversed_cycle() {
 fn a_floating_plate_is_loaded_on_both_ends_and_a_held_one_on_one() {
     let floating = case(PLATE, "stress_max_mpa = 10\nstress_ratio = 0").unwrap().specimen;
     assert_eq!((floating.loads.len(), floating.supports.len()), (2, 0));
-    let held = case(PLATE, "stress_max_mpa = 10\nstress_ratio = 0\n[supports]\nbottom = { rows_mm = 3, fix = [\"x\", \"y\"] }")
-        .unwrap()
-        .specimen;
+    let support = "[supports]\nbottom = { rows_mm = 3, fix = [\"x\", \"y\"] }";
+    let held = case(PLATE, &format!("stress_max_mpa = 10\nstress_ratio = 0\n{support}")).unwrap().specimen;
     assert_eq!(held.loads, [Load::Edge { from: [0.05, 0.1], to: [-0.05, 0.1], traction: [0.0, 1.0] }]);
     assert_eq!(held.supports, [Support::Fixed { from: [-0.05, -0.1], to: [0.05, -0.1], depth: 0.003, x: true, y: true }]);
 }
@@ -146,12 +142,10 @@ fn directions_pressures_and_displacements_that_are_refused() {
     let two = "kind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\n\
                cracks = [{ from_mm = [-50, 0], to_mm = [-40, 0] }, { from_mm = [50, 0], to_mm = [40, 0] }]";
     for [specimen, loading, words] in rows::<Vec<[String; 3]>>("loading", "refused") {
-        let specimen = if specimen == "two cracks" {
-            two
-        } else if specimen == "panel" {
-            PANEL
-        } else {
-            PLATE
+        let specimen = match &*specimen {
+            "two cracks" => two,
+            "panel" => PANEL,
+            _ => PLATE,
         };
         let error = case(specimen, &loading).map(|_| ()).expect_err(&loading).to_string();
         assert!(error.contains(&words), "{loading}: {error}");

@@ -25,7 +25,6 @@ fn error(count: usize, of: fn(f64) -> f64) -> f64 {
 fn errors_fall_by_the_fifth_power_and_quartics_are_exact() {
     assert!(error(7, |x| 1.0 - 2.0 * x + 0.5 * x.powi(3) - 0.25 * x.powi(4)) < 1e-13);
     let errors = [20, 40, 80].map(|count| error(count, |x| (3.0 * x).sin()));
-    println!("{errors:?}");
     // The ends of the table decide, where the five points lie on one side.
     assert!(errors.windows(2).all(|pair| pair[0] / pair[1] > 24.0), "{errors:?}");
 }
@@ -69,7 +68,6 @@ fn lives_between_rows_of_a_power_law() {
         let line = pair[0][1] + (a - pair[0][0]) / (pair[1][0] - pair[0][0]) * (pair[1][1] - pair[0][1]);
         worst = [worst[0].max((table.at(a) - cycles(a)).abs() / life), worst[1].max((line - cycles(a)).abs() / life)];
     }
-    println!("{worst:?}");
     assert!(worst[0] < 2e-3 && worst[1] > 5.0 * worst[0], "{worst:?}");
     // The inverse is one.
     for (before, y) in [(0, cycles(10.7)), (5, cycles(24.0)), (15, cycles(49.9))] {

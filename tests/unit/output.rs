@@ -80,41 +80,6 @@ fn an_unfinished_folder_leaves_nothing() {
 }
 
 #[test]
-fn an_unfinished_folder_leaves_the_earlier_result() {
-    let dir = tempdir().unwrap();
-    let out = dir.path().join("run");
-    OutputFolder::create(&out, RunKind::Predict).unwrap().finish().unwrap();
-    drop(OutputFolder::create(&out, RunKind::Predict).unwrap());
-    assert_eq!(names(&out), [MARKER]);
-}
-
-#[test]
-fn an_empty_folder_may_be_used() {
-    let dir = tempdir().unwrap();
-    let out = dir.path().join("run");
-    fs::create_dir(&out).unwrap();
-    OutputFolder::create(&out, RunKind::Predict).unwrap().finish().unwrap();
-    assert_eq!(names(&out), [MARKER]);
-}
-
-#[test]
-fn what_is_not_ours_is_refused() {
-    let dir = tempdir().unwrap();
-    let (folder, file) = (dir.path().join("thesis"), dir.path().join("file"));
-    fs::create_dir(&folder).unwrap();
-    fs::write(folder.join("chapter"), "years of work").unwrap();
-    fs::write(&file, "text").unwrap();
-    // The last two: a folder below a file, and the folder the test itself runs in.
-    for (path, code) in [(folder.as_path(), 2), (&file, 2), (Path::new(""), 2), (&file.join("run"), 4), (Path::new("."), 2)] {
-        let error = OutputFolder::create(path, RunKind::Predict).unwrap_err();
-        assert_eq!(error.exit_code(), code, "{error}");
-        assert!(error.to_string().contains(&path.display().to_string()), "{error}");
-    }
-    assert_eq!(names(dir.path()), ["file", "thesis"]);
-    assert_eq!(names(&folder), ["chapter"]);
-}
-
-#[test]
 fn a_file_is_whole_or_absent() {
     let dir = tempdir().unwrap();
     let file = dir.path().join("a.csv");
@@ -127,19 +92,6 @@ fn a_file_is_whole_or_absent() {
     assert_eq!(write_file(&dir.path().join("missing/a.csv"), b"x").unwrap_err().exit_code(), 4);
     assert_eq!(write_file(&file.join("below"), b"x").unwrap_err().exit_code(), 4);
     assert_eq!(names(dir.path()), ["a.csv"]);
-}
-
-#[test]
-#[cfg(target_os = "linux")]
-fn a_full_target_is_file_trouble_and_the_device_stays() {
-    use std::os::unix::fs::FileTypeExt;
-    let full = Path::new("/dev/full");
-    if !full.exists() {
-        println!("skipped: this system has no /dev/full");
-        return;
-    }
-    assert_eq!(write_file(full, b"x").unwrap_err().exit_code(), 4);
-    assert!(fs::metadata(full).unwrap().file_type().is_char_device());
 }
 
 // Numbers survive whatever they are kept in, to the last bit.

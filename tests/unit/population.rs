@@ -360,7 +360,6 @@ fn the_assumed_scatter_is_that_of_the_lots() {
         (0.5 * rows.map(of).sum::<f64>() - 0.5 * all.ln(), tau, (sum / all).exp())
     };
     let best = (1..400).map(|i| fit(f64::from(i) * 0.0025)).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
-    println!("{best:?}");
     assert!((best.1 - DEVIATION).abs() < 0.005 && (best.2 / MEDIAN - 1.0).abs() < 0.01, "{best:?}");
     // P(|Z| e^(τ U) > q) over a grid of U, Z and U normal.
     let q = perilife_calibration::population::student::t_quantile(0.95, FREEDOM);

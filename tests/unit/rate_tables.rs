@@ -154,10 +154,8 @@ fn ends_of_k_ratios_side_by_side_and_unmeasured_rates() {
         let row = table(text, &keys).unwrap().rows.remove(0);
         assert!((row.ratio - ratio).abs() < 1e-9 && (row.delta_k / MPA_SQRT_M - delta_k).abs() < 1e-9, "{row:?}");
     }
-    assert_refusal(
-        table("ΔK (MPa√m),Kmax (MPa√m),R,da/dN (mm/cycle)\n7,10,0.1,1e-5\n", &plain),
-        &["gives a stress ratio of 0.300; the row has 0.1"],
-    );
+    let refused = table("ΔK (MPa√m),Kmax (MPa√m),R,da/dN (mm/cycle)\n7,10,0.1,1e-5\n", &plain);
+    assert_refusal(refused, &["gives a stress ratio of 0.300; the row has 0.1"]);
     assert_refusal(table("Kmax (MPa√m),da/dN (mm/cycle)\n10,1e-5\n", &plain), &["has no columns"]);
     for (text, first, said) in [
         ("da/dN (mm/cycle),R=0.1,R=0.5\n1e-6,5,4\n1e-5,9,\n", [0.1, 5.0], true),

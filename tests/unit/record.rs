@@ -152,10 +152,8 @@ fn at(load: f64, k_i: f64, free: Option<f64>) -> AtLoad {
 #[test]
 fn lines_between_loads_and_ratios() {
     let plain = Response::PROPORTIONAL;
-    assert_eq!(
-        (plain.at(0.3), plain.ratio(-0.5), plain.range_share(-0.5), plain.cycle([0.2, 0.9])),
-        (0.3, -0.5, 1.0, [0.9, 0.2])
-    );
+    let found = (plain.at(0.3), plain.ratio(-0.5), plain.range_share(-0.5), plain.cycle([0.2, 0.9]));
+    assert_eq!(found, (0.3, -0.5, 1.0, [0.9, 0.2]));
     // K_res is a fifth of K_max: K = 0.2 + 0.8 f.
     let residual = Response::of_residual(0.2);
     for (found, right) in

@@ -74,11 +74,8 @@ fn factors_of_every_tip_stand_in_long_form() {
     assert_eq!(table.len(), 2 * rows, "a row for every tip and row of the curve");
     for (number, row) in table.iter().enumerate() {
         let point = &run.curve[number % rows];
-        assert!(
-            row[0] == (number / rows) as f64
-                && row[1] == point.cycles
-                && (row[2] / (1e3 * point.crack_length) - 1.0).abs() < 1e-12
-        );
+        assert!(row[0] == (number / rows) as f64 && row[1] == point.cycles);
+        assert!((row[2] / (1e3 * point.crack_length) - 1.0).abs() < 1e-12);
         if number % rows == rows - 1 {
             assert!(row[4..8].iter().chain(&row[9..]).all(|cell| cell.is_nan()), "{row:?}");
         } else {

@@ -7,6 +7,7 @@ use perilife_plate::specimen::geometry::{distance, point_in_polygon, segments_to
 use perilife_plate::specimen::{Load, LoadMeasure, PART_THROUGH, Specimen, SpecimenKind, Support};
 use proptest::prelude::*;
 
+use crate::support::plates::cracks;
 use crate::support::rows::assert_refusal;
 
 /// A plate of 100 x 200 mm with these keys besides.
@@ -62,12 +63,8 @@ fn compact_tension_has_the_proportions_of_e647() {
     for (hole, sign) in specimen.holes.iter().zip([1.0, -1.0]) {
         assert!(near(hole.centre[0], 0.0) && near(hole.centre[1], sign * 0.01375) && near(hole.radius, 0.00625));
     }
-    let pull: f64 = specimen
-        .loads
-        .iter()
-        .map(|load| if let Load::Pin { direction, force, .. } = load { direction[1] * force } else { 1.0 })
-        .sum();
-    assert!(near(pull, 0.0), "the pins pull against each other");
+    let pull = |load: &Load| if let Load::Pin { direction, force, .. } = load { direction[1] * force } else { 1.0 };
+    assert!(near(specimen.loads.iter().map(pull).sum(), 0.0), "the pins pull against each other");
 }
 
 #[test]
@@ -85,26 +82,22 @@ fn ends_become_supports() {
 
 #[test]
 fn a_crack_is_cut_off_where_it_leaves_the_material() {
+    let hole = "holes = [{ x_mm = 0, y_mm = 0, diameter_mm = 10 }]";
+    let slot = "notches = [{ from_mm = [-55, 0], to_mm = [-40, 0], width_mm = 2 }]";
+    let [at_hole, at_slot] = [(hole, [[0.0, 0.0], [9.0, 0.0]]), (slot, [[-41.0, 0.0], [-37.0, 0.0]])]
+        .map(|(keys, ends)| format!("{keys}\n{}", cracks(&[ends])));
     // (keys, crack length mm, tips as x, y mm)
     let rows: [(&str, f64, &[[f64; 2]]); 6] = [
         ("cracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]", 10.0, &[[-5.0, 0.0], [5.0, 0.0]]),
         ("cracks = [{ from_mm = [-50, 3], to_mm = [-40, 3] }]", 10.0, &[[-40.0, 3.0]]),
         // From the middle of the hole: only what lies beyond its edge counts.
-        (
-            "holes = [{ x_mm = 0, y_mm = 0, diameter_mm = 10 }]\ncracks = [{ from_mm = [0, 0], to_mm = [9, 0] }]",
-            4.0,
-            &[[9.0, 0.0]],
-        ),
+        (&at_hole, 4.0, &[[9.0, 0.0]]),
         // Slot alone: the middle of its end face in the material.
         ("notches = [{ from_mm = [-50, 0], to_mm = [-40, 0], width_mm = 2 }]", 10.0, &[[-40.0, 0.0]]),
         // Closed slot: both faces.
         ("notches = [{ from_mm = [-5, 0], to_mm = [5, 0], width_mm = 2 }]", 10.0, &[[5.0, 0.0], [-5.0, 0.0]]),
         // A crack from the end face takes the place of the slot's seed; it is cut off at the face.
-        (
-            "notches = [{ from_mm = [-55, 0], to_mm = [-40, 0], width_mm = 2 }]\ncracks = [{ from_mm = [-41, 0], to_mm = [-37, 0] }]",
-            13.0,
-            &[[-37.0, 0.0]],
-        ),
+        (&at_slot, 13.0, &[[-37.0, 0.0]]),
     ];
     for (keys, length, tips) in rows {
         let specimen = plate(keys).unwrap_or_else(|error| panic!("{keys}: {error}"));
@@ -125,16 +118,10 @@ fn contains_and_cuts() {
     let keys = "holes = [{ x_mm = 20, y_mm = 30, diameter_mm = 10 }]\ncracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]\n\
                 notches = [{ from_mm = [-50, 50], to_mm = [-30, 50], width_mm = 2 }]";
     let specimen = plate(keys).unwrap();
-    for (x, y, inside) in [
-        (0.0, 0.0, true),
-        (20.0, 30.0, false),
-        (20.0, 35.1, true),
-        (-40.0, 50.5, false),
-        (-40.0, 51.1, true),
-        (51.0, 0.0, false),
-        (0.0, -101.0, false),
-    ] {
-        assert_eq!(specimen.contains([x * 1e-3, y * 1e-3]), inside, "({x}, {y})");
+    let inside = [[0.0, 0.0], [20.0, 35.1], [-40.0, 51.1]];
+    let outside = [[20.0, 30.0], [-40.0, 50.5], [51.0, 0.0], [0.0, -101.0]];
+    for at in inside.iter().chain(&outside) {
+        assert_eq!(specimen.contains(at.map(|x| x * 1e-3)), inside.contains(at), "{at:?}");
     }
     // 100 x 200 less hole and slot, mm².
     let area = 20_000.0 - std::f64::consts::PI * 25.0 - 40.0;
@@ -147,10 +134,8 @@ fn other_names_of_part_through_flaws_lead_to_the_kinds() {
         assert_refusal(case(&format!("kind = \"{kind}\""), "stress_max_mpa = 10"), &[kind, "surface_crack, corner_crack"]);
     }
     for key in ["depth_mm", "crack_depth_mm", "aspect_ratio"] {
-        assert_refusal(
-            plate(&format!("{key} = 2\ncracks = [{{ from_mm = [-5, 0], to_mm = [5, 0] }}]")),
-            &[key, "use one of surface_crack"],
-        );
+        let refused = plate(&format!("{key} = 2\ncracks = [{{ from_mm = [-5, 0], to_mm = [5, 0] }}]"));
+        assert_refusal(refused, &[key, "use one of surface_crack"]);
     }
 }
 

@@ -14,6 +14,8 @@ use perilife_results::spectrum::spectrum_svg;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
+use crate::support::rows::{assert_says, rows};
+
 /// A case with a spectrum of this content, whatever else `[loading]` has.
 fn loading(file: &str, content: &str, more: &str) -> Result<Loading, Error> {
     loading_of(file, content.as_bytes().to_vec(), more)
@@ -59,21 +61,15 @@ fn every_format_says_the_same_cycles() {
     let wanted = [[40.0, 5.0, 2.0], [50.0, 10.0, 1.0], [30.0, -5.0, 3.0]];
     let spx = "<?xml version=\"1.0\"?>\n<Spectrum><SubSpectrum Name=\"a\">\n<B Mx=\"40\" Mn=\"5\" C=\"2\"/>\n<B Mx=\"50\" Mn=\"10\" C=\"1\"/>\
                </SubSpectrum>\n<SubSpectrum><B Mx=\"30\" Mn=\"-5\" C=\"3\"/></SubSpectrum></Spectrum>";
+    let ksi = "\"Peak\",\"Valley\",\"N\"\nksi,ksi,-\n5.8015095,0.7251887,2\n7.2518869,1.4503774,1\n4.3511321,-0.7251887,3\n";
+    let ratios = "# flight\tsmax\tstress ratio\tcycles\n1\t40\t0.125\t2\n1\t50\t0.2\t1\n2\t30\t-0.16666666667\t3\n";
     let files = [
         ("a.csv", "# a comment\nmax,min,cycles\n40,5,2\n50,10,1\n30,-5,3\n", SpectrumFormat::Cycles),
         ("b.csv", "cycles;min;max\n2;5;40\n1;10;50\n3;-5;30\n", SpectrumFormat::Cycles),
         ("c.txt", "40 5 2\n50 10 1\n30 -5 3\n", SpectrumFormat::Cycles),
         ("g.csv", "Range (MPa);Mean (MPa);Count\n35,0;22,5;2\n40,0;30,0;1\n35,0;12,5;3\n", SpectrumFormat::Cycles),
-        (
-            "h.csv",
-            "\"Peak\",\"Valley\",\"N\"\nksi,ksi,-\n5.8015095,0.7251887,2\n7.2518869,1.4503774,1\n4.3511321,-0.7251887,3\n",
-            SpectrumFormat::Cycles,
-        ),
-        (
-            "i.txt",
-            "# flight\tsmax\tstress ratio\tcycles\n1\t40\t0.125\t2\n1\t50\t0.2\t1\n2\t30\t-0.16666666667\t3\n",
-            SpectrumFormat::Cycles,
-        ),
+        ("h.csv", ksi, SpectrumFormat::Cycles),
+        ("i.txt", ratios, SpectrumFormat::Cycles),
         ("j.csv", "amplitude,mean,n\n17.5,22.5,2 # of the first flight\n20,30,1\n17.5,12.5,3\n", SpectrumFormat::Cycles),
         ("d.sub", "2\n40 5 2\n50 10 1\n1\n30 -5 3\n", SpectrumFormat::Sub),
         ("e.sub", "wing root\n40 5 2\n50 10 1\n30 -5 3\n", SpectrumFormat::Sub),
@@ -184,30 +180,9 @@ fn compression_and_a_threshold_count_as_the_law_says() {
 /// What may be either is asked about, by the key that settles it or the name to give.
 #[test]
 fn what_may_be_either_is_asked_about() {
-    let rows: [(&str, &str, &[&str]); 19] = [
-        ("100,50.0,1\n80,45.0,10\n", "", &["a.csv:1:", "3 columns without a known name", "spectrum_format = \"cycles\""]),
-        ("30,0.5\n40,1.5\n", "", &["a.csv:1:", "2 columns without a known name"]),
-        ("12,5\n110,25\n40,5\n", "", &["a.csv:1:", "12,5", "decimal commas", "turning_points"]),
-        ("7\n1\n2\n1\n2\n1\n3\n", "", &["a.csv:1:", "may be the number of values, and 6 follow"]),
-        ("4\n1\n3\n1\n2\n", "", &["a.csv:1:", "may be the number of values, and 4 follow"]),
-        ("max,min,cumulative cycles\n2,1,5\n", "", &["a.csv:1:", "cumulative cycles", "unknown column"]),
-        ("max,min,cycles,repeats\n2,1,5,2\n", "", &["a.csv:1:", "repeats", "duplicates an earlier column"]),
-        ("range,count\n2.5,1\n", "", &["a.csv:1:", "range,count", "has no column"]),
-        ("range,count\n2,1\n", "", &["a.csv:2:", "2,1", "decimal commas"]),
-        ("max (N),min (N)\n2,1\n", "", &["a.csv:1:", "is in N", "spectrum_scale_n"]),
-        ("max (psi),min (psi)\n2,1\n", "", &["a.csv:1:", "unknown unit"]),
-        ("max,min,flaps\n2,1,5\n", "", &["a.csv:1:", "flaps", "unknown column"]),
-        ("max,min\n2,1\n", "spectrum_format = \"turning_points\"\n", &["a.csv:1:", "another format"]),
-        ("Cycle,max,min\n1,100,0\n2,60,10\n3,55,20\n", "", &["a.csv:1:", "Cycle", "row numbers", "rename it row"]),
-        ("N,max,min\n0,100,0\n500,60,10\n1000,55,20\n", "", &["a.csv:1:", "row numbers"]),
-        ("max (%),min (%)\n100,0\n80,5\n", "", &["a.csv:1:", "max (%)", "unknown unit"]),
-        ("12 55 30\n-10\n60\n20\n75\n40\n", "", &["a.csv:1:", "12 55 30", "one load a line"]),
-        ("9\n1\n3\n1\n2\n1\n3\n", "", &["a.csv:1:", "may be the number of values, and 6 follow"]),
-        ("max,min,cycles\n100,50,1\n", "truncation_percent = 20\n", &["truncation_percent", "omits every tensile cycle"]),
-    ];
-    for (content, more, words) in rows {
-        let error = loading("a.csv", content, more).unwrap_err().to_string();
-        assert!(words.iter().all(|word| error.contains(word)), "{content:?}: {error}");
+    for (content, more, words) in rows::<Vec<(String, String, Vec<String>)>>("spectrum", "either") {
+        let error = loading("a.csv", &content, &more).unwrap_err();
+        assert_says(&format!("{content:?}: {error}"), &words);
     }
     // Numbers of rows under another name, and cycles whose format is given.
     for (content, more) in
@@ -237,9 +212,7 @@ fn the_cycles_that_act_are_told_with_their_shares() {
     let wanted = [(2.5e6, 0.5, 375.0 / 475.0), (10e6, 0.0, 100.0 / 475.0)];
     assert_eq!(acting.len(), 2);
     for (found, (delta_k, ratio, share)) in acting.iter().zip(wanted) {
-        assert!(
-            (found.delta_k - delta_k).abs() < 1.0 && found.ratio == ratio && (found.share - share).abs() < 1e-12,
-            "{found:?}"
-        );
+        assert!((found.delta_k - delta_k).abs() < 1.0 && found.ratio == ratio, "{found:?}");
+        assert!((found.share - share).abs() < 1e-12, "{found:?}");
     }
 }

@@ -9,6 +9,8 @@ use perilife_study::speed::{COLUMNS, Origin, beaten, csv, fastest_within, markdo
 use perilife_study::tasks::Outcome;
 use perilife_study::values::concentration_of;
 
+use crate::support::rows::assert_says;
+
 /// A run that took and found so much.
 fn run(wall_s: f64, error_percent: f64) -> BenchmarkRun {
     let model = Model {
@@ -102,10 +104,7 @@ fn what_has_no_result_is_a_point_with_its_reason() {
     // Two panels, a star in each for the choice of the program at four tolerances.
     assert_eq!(picture.matches("fill=\"#f2c14e\"").count(), 8);
     let summary = markdown(&chart, &origin);
-    assert!(
-        summary.contains("refused: not with this material") && summary.contains("stopped: not done after 120 s"),
-        "{summary}"
-    );
+    assert_says(&summary, &["refused: not with this material", "stopped: not done after 120 s"]);
 }
 
 #[test]
@@ -169,21 +168,18 @@ fn the_machine_has_threads_and_an_instruction_set() {
 }
 
 #[test]
-fn beaten_points_are_left_out() {
-    let points = [(1.0, 3.0), (2.0, 4.0), (0.5, 8.0), (4.0, 1.0), (3.0, 1.0), (5.0, f64::NAN), (9.0, 2.0)];
-    assert_eq!(front(&points), [2, 0, 4]);
-}
-
-#[test]
-fn round_off_earns_no_place() {
-    assert_eq!(front(&[(1.0, 2.0), (3.0, 2.0 * (1.0 - 1e-6))]), [0]);
-    assert_eq!(front(&[(1.0, 2.0), (3.0, 2.0 * (1.0 - 1e-2))]), [0, 1]);
-    assert_eq!(front(&[(1.0, 2.0), (2.0, 0.0), (3.0, 0.0)]), [0, 1], "no error at all earns one, but once");
-}
-
-#[test]
-fn nothing_has_no_front() {
-    assert!(front(&[]).is_empty() && front(&[(f64::INFINITY, 1.0), (1.0, f64::NAN)]).is_empty());
+fn beaten_points_are_left_out_and_round_off_earns_no_place() {
+    let (nan, inf) = (f64::NAN, f64::INFINITY);
+    let rows: [(&[(f64, f64)], &[usize]); 6] = [
+        (&[(1.0, 3.0), (2.0, 4.0), (0.5, 8.0), (4.0, 1.0), (3.0, 1.0), (5.0, nan), (9.0, 2.0)], &[2, 0, 4]),
+        (&[(1.0, 2.0), (3.0, 2.0 * (1.0 - 1e-6))], &[0]),
+        (&[(1.0, 2.0), (3.0, 2.0 * (1.0 - 1e-2))], &[0, 1]),
+        // No error at all earns one, but once.
+        (&[(1.0, 2.0), (2.0, 0.0), (3.0, 0.0)], &[0, 1]),
+        (&[], &[]),
+        (&[(inf, 1.0), (1.0, nan)], &[]),
+    ];
+    rows.iter().for_each(|(points, wanted)| assert_eq!(front(points), *wanted, "{points:?}"));
 }
 
 #[test]

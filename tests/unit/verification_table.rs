@@ -70,11 +70,8 @@ fn both_bounds_of_a_known_miss_are_told() {
     let lines: Vec<&str> = table.lines().collect();
     assert!(lines[0].ends_with(",wall_s,miss_bound_percent"), "{}", lines[0]);
     assert!(lines[1].ends_with(',') && lines[2].ends_with(",22.000000"), "{table}");
-    assert!(
-        line(&rows[1]).contains("miss") && line(&rows[1]).contains("(bound 5.00 %, known miss 22.00 %)"),
-        "{}",
-        line(&rows[1])
-    );
+    assert!(line(&rows[1]).contains("miss"), "{}", line(&rows[1]));
+    assert!(line(&rows[1]).contains("(bound 5.00 %, known miss 22.00 %)"), "{}", line(&rows[1]));
 }
 
 /// A row fails beyond its bound without a reason, and beyond what is known and a tenth of it; an error that is no number fails.

@@ -60,7 +60,6 @@ fn standard_specimens_live_as_hand_calculation_says() {
         let constant = constant_over_elasticity / case.material.plane_modulus().powf(2.86);
         // A is rescaled to each horizon so that C stays.
         let by_hand = integral(case, case.specimen.crack_length, case.stop.crack_length) / constant;
-        println!("{name}: life over hand calculation {:.4}", run.life_cycles() / by_hand);
         // Reached: 1.3 %.
         assert!((run.life_cycles() / by_hand - 1.0).abs() < 0.03, "{name}: {}", run.life_cycles() / by_hand);
     }
@@ -110,7 +109,6 @@ fn slant_examples_start_as_in_an_infinite_plate() {
         let size = 1e-6 * case.loading.maximum * (0.5 * std::f64::consts::PI * case.specimen.crack_length).sqrt();
         let right = [size * beta.sin().powi(2), size * beta.sin() * beta.cos()];
         let found = first.factors.unwrap().map(|k| k / 1e6);
-        println!("{name}: {found:?}, infinite plate {right:?}");
         let off = (found[0] - right[0]).hypot(found[1].abs() - right[1]);
         assert!(off < 0.01 * right[0].hypot(right[1]), "{name}: {found:?}, {right:?}");
         let kink = 2.0 * ((right[0] - (right[0].powi(2) + 8.0 * right[1].powi(2)).sqrt()) / (4.0 * right[1])).atan();

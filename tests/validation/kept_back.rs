@@ -21,9 +21,6 @@ fn bound(length_mm: f64) -> f64 {
     if length_mm < 20.0 { 0.04 } else { 0.02 }
 }
 
-/// Lengths that are printed, mm.
-const PRINTED: [f64; 8] = [15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 49.8];
-
 /// Medians of the panels with `i / run` even and of the others.
 fn halves(panels: &[MeasuredCurve], run: usize) -> [MeasuredCurve; 2] {
     [0, 1].map(|parity| {
@@ -61,29 +58,10 @@ impl Comparison {
 /// Mean over fits to both halves of the deviation from the half kept back, at every reading from 15 mm on.
 fn check_mean(comparisons: &[Comparison]) {
     for length in comparisons[0].lengths() {
-        let others = || comparisons.iter().map(|comparison| comparison.deviations(length)[1]);
-        let mean = others().sum::<f64>() / comparisons.len() as f64;
+        let others = comparisons.iter().map(|comparison| comparison.deviations(length)[1]);
+        let mean = others.sum::<f64>() / comparisons.len() as f64;
         assert!(mean.abs() <= bound(length), "{length} mm: mean deviation {mean}");
     }
-    for length in PRINTED {
-        let count = comparisons.len() as f64;
-        let mean = |i: usize| comparisons.iter().map(|c| c.deviations(length)[i]).sum::<f64>() / count;
-        let rms = |i: usize| (comparisons.iter().map(|c| c.deviations(length)[i].powi(2)).sum::<f64>() / count).sqrt();
-        println!(
-            "{length} mm: over seen {:+.4} (rms {:.4}), over kept back {:+.4} (rms {:.4}); halves rms {:.4}",
-            mean(0),
-            rms(0),
-            mean(1),
-            rms(1),
-            rms(2)
-        );
-    }
-    let kept = |c: &&Comparison, which: usize| c.lengths().iter().all(|&a| c.deviations(a)[which].abs() <= bound(a));
-    let within = |which: usize| comparisons.iter().filter(|c| kept(c, which)).count();
-    let count = comparisons.len();
-    println!("2 % from 20 mm and 4 % from 15 mm kept by {} of {count} against the half seen", within(0));
-    println!("                                      by {} of {count} against the half kept back", within(1));
-    println!("                                      by {} of {count} of one half against the other", within(2));
 }
 
 /// Hand calculation in the place of the model: many ways to halve the panels in a second.
@@ -117,18 +95,8 @@ fn panels_kept_back_live_as_the_others_say() {
     let [even, odd] = halves(&calibration.curves, 1);
     let named = |curve: &MeasuredCurve, name: &str| MeasuredCurve { specimen: name.to_owned(), ..curve.clone() };
     let Fit { specimens, .. } = engine_fit(&calibration, &[named(&even, "even"), named(&odd, "odd")]);
-    let comparisons: Vec<Comparison> = [(&specimens[0], &even, &odd), (&specimens[1], &odd, &even)]
-        .into_iter()
-        .map(|(fit, seen, kept_back)| {
-            println!("{}: p {:.4}, rms {:.4}", fit.name, fit.constants.p, fit.rms_life_error());
-            Comparison::new(fit, seen, kept_back)
-        })
-        .collect();
-    for comparison in &comparisons {
-        for length in PRINTED {
-            println!("{length} mm: over seen, over kept back, halves {:+.4?}", comparison.deviations(length));
-        }
-    }
+    let comparisons = [(&specimens[0], &even, &odd), (&specimens[1], &odd, &even)]
+        .map(|(fit, seen, kept_back)| Comparison::new(fit, seen, kept_back));
     check_mean(&comparisons);
     for length in comparisons[0].lengths() {
         let [own, other, halves] = comparisons[0].deviations(length);

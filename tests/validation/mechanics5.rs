@@ -13,12 +13,10 @@ use perilife_growth::predict::tip_factors::{StressIntensityMethod, stress_intens
 use perilife_growth::predict::{Prediction, Silent, error_estimate::error_estimate, predict};
 use perilife_plate::specimen::geometry::distance;
 use perilife_plate::specimen::{Bearing, Load};
-use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{perilife, texts};
-use crate::interface::practice::copy;
-use crate::support::field::{command, is_near, predicted};
-use crate::support::rows::{assert_says, rows};
+use crate::support::field::{command, folder, is_near, predicted};
+use crate::support::rows::{assert_holds, rows};
 use crate::support::shared::shared;
 
 // Contact that does not follow the load in proportion, against finite elements with contact of others (`../shared/data/field/mechanics5`): residual stress that presses flanks, pins with clearance; and spectra beside constant amplitude.
@@ -29,21 +27,13 @@ fn run(name: &str, set: &[String]) -> Option<(Case, Prediction)> {
     Some((case, run))
 }
 
-/// File, K_I at the largest and at the least load, MPa√m, and life with its bound. K by elements halved 0.3 %, lives 1 to 2 %.
-const ENDS: [(&str, [f64; 2], f64, f64); 3] = [
-    ("residual_with_contact/peened_edge", [5.740, 1.405], 2_203_000.0, 0.01),
-    ("residual_with_contact/pressed_middle", [7.99, 0.70], 1_632_000.0, 0.015),
-    ("residual_with_contact/pressed_middle_r5", [7.99, 3.80], 4_466_500.0, 0.01),
-];
-
 #[test]
 fn both_ends_of_a_cycle_have_their_own_contact() {
-    for (name, [largest, least], life, bound) in ENDS {
-        let Some((case, run)) = run(name, &[]) else { return };
+    for (name, [largest, least], life, bound) in rows::<Vec<(String, [f64; 2], f64, f64)>>("mechanics5_plates", "ends") {
+        let Some((case, run)) = run(&name, &[]) else { return };
         let first = &run.curve[0];
         let (k_i, ratio) = (first.tips[0].factors.unwrap()[0] / MPA_SQRT_M, first.response.ratio(case.loading.ratio));
         let stated = error_estimate(&case, &run).unwrap().life_percent;
-        println!("{name}: {k_i:.3}, R_eff {ratio:.4}, life {:.0}, at most {stated:.1} %", run.life_cycles());
         assert!((k_i / largest - 1.0).abs() < 0.006 && (ratio - least / largest).abs() < 0.003, "{name}: {k_i}, {ratio}");
         assert!((run.life_cycles() / life - 1.0).abs() < bound && stated < 3.0, "{name}: {}, {stated}", run.life_cycles());
     }
@@ -60,7 +50,6 @@ fn a_pin_with_clearance_has_its_own_contact_at_both_ends() {
         initial_tips::<NodePlate>(&case).unwrap().tips[0].factors.unwrap().map(|k| k / MPA_SQRT_M)
     };
     let [largest, least] = [1e4, 5e3].map(of);
-    println!("{largest:?}, {least:?}, {}", run.curve[0].response.ratio(case.loading.ratio));
     assert!((largest[0] / 16.336 - 1.0).abs() < 0.002 && (least[0] / 8.588 - 1.0).abs() < 0.002, "{largest:?}, {least:?}");
     let right = factor_across(least, kink_angle(largest)) / equivalent_factor(largest);
     assert!((run.curve[0].response.ratio(case.loading.ratio) - right).abs() < 0.001, "{right}");
@@ -84,7 +73,6 @@ fn mouths_that_close_hold_a_crack_open() {
             initial_tips::<PointPlate>(&of("peridynamics")).unwrap(),
         ]
         .map(|found| (found.tips[0].factors.unwrap()[0] / MPA_SQRT_M, found.in_contact));
-        println!("{end} mm: {nodes:?}, {points:?}");
         assert!(nodes.1 && points.1 && (nodes.0 / points.0 - 1.0).abs() < 0.015, "{end} mm: {nodes:?}, {points:?}");
     }
 }
@@ -120,22 +108,6 @@ fn a_spectrum_of_equal_cycles_is_constant_amplitude() {
 
 // Pins that touch beside the mouth of a crack (`field/mechanics5/pin_at_mouth` of the shared data): K by finite elements with contact.
 
-/// Error of K over K_I where the pin touches at the mouth, and elsewhere.
-const AT_MOUTH: f64 = 0.005;
-const ELSEWHERE: f64 = 0.0025;
-
-/// File, K_I and K_II in MPa√m, error over K_I. Of `pin90_crack90` the elements have contact of the flanks (tests/reference/pin_contact.py), which
-/// the pin presses together at the mouth; with flanks that overlap they have 1.778.
-const ROWS: [(&str, f64, f64, f64); 7] = [
-    ("pin0_crack90", 8.625, -2.966, AT_MOUTH),
-    ("pin0_crack90_short", 8.026, -1.379, AT_MOUTH),
-    ("pin45_crack0", 8.918, 4.462, AT_MOUTH),
-    ("pin90_crack90", 1.9505, 0.0, AT_MOUTH),
-    ("guard_pin90_crack0", 16.336, -1.942, ELSEWHERE),
-    ("guard_pin90_crack60", 5.068, 2.565, AT_MOUTH),
-    ("guard_loose", 10.865, -2.250, ELSEWHERE),
-];
-
 /// K of a file, MPa√m, and the residual of its contact.
 fn found(file: &str, others: &[&str]) -> Option<([f64; 2], f64)> {
     let path = shared(&format!("field/mechanics5/pin_at_mouth/{file}.toml"))?;
@@ -150,11 +122,10 @@ fn found(file: &str, others: &[&str]) -> Option<([f64; 2], f64)> {
 
 #[test]
 fn pins_lean_on_mouths_of_cracks() {
-    for (file, k_i, k_ii, share) in ROWS {
+    for (file, k_i, k_ii, share) in rows::<Vec<(String, f64, f64, f64)>>("mechanics5_plates", "pins_at_mouths") {
         for finer in [&[][..], &["model.tolerance_percent=0.5"]] {
-            let Some((k, residual)) = found(file, finer) else { return };
+            let Some((k, residual)) = found(&file, finer) else { return };
             let off = [k[0] - k_i, k[1] - k_ii].map(|off| off / k_i);
-            println!("{file} {finer:?}: {k:.3?}, off {off:.4?} of K_I, residual {residual:.5}");
             assert!(off.iter().all(|off| off.abs() < share), "{file} {finer:?}: {k:?}");
             assert!(residual < 0.006, "{file} {finer:?}: {residual}");
         }
@@ -178,7 +149,6 @@ fn file(name: &str) -> Option<PathBuf> {
 }
 
 fn is_near_of_plates(found: f64, right: f64, percent: f64, what: &str) {
-    println!("{what}: {found:.6}, right {right}, {:+.2} %", 100.0 * (found / right - 1.0));
     assert!((found / right - 1.0).abs() < 0.01 * percent, "{what}: {found} for {right}");
 }
 
@@ -224,33 +194,16 @@ fn stress_at_a_stop_hole() {
     is_near_of_plates(1e-6 * run.phase_one.unwrap().range, 231.1, 0.3, "stop hole");
 }
 
-/// File, what is set beside it, and of every tip K_I and K_II with their bounds, MPa√m.
-type Factors = (&'static str, &'static str, &'static [[f64; 4]]);
-
-/// Finite elements, at 0.48 to 0.495 of K_I alone; M(T) does not depend on ν.
-const FACTORS: [Factors; 9] = [
-    ("nu_near_half/mt499", "", &[[15.218, 0.03, 0.0, 0.02]; 2]),
-    ("nu_near_half/mt499", "material.poisson_ratio=0.46", &[[15.218, 0.05, 0.0, 0.02]; 2]),
-    ("nu_near_half/lug_arc_499", "", &[[16.609, 0.03, -1.415, 0.02]]),
-    ("nu_near_half/lug_arc_499", "material.poisson_ratio=0.495", &[[16.606, 0.03, 0.0, f64::INFINITY]]),
-    ("nu_near_half/guard_lug_arc_49", "", &[[16.598, 0.03, 0.0, f64::INFINITY]]),
-    ("nu_near_half/guard_lug_arc_49", "material.poisson_ratio=0.48", &[[16.582, 0.03, 0.0, f64::INFINITY]]),
-    ("guards/drawing_arcs", "", &[[9.122, 0.03, 0.022, 0.02]]),
-    ("guards/overlap", "", &[[22.387, 0.05, -0.326, 0.02], [1.187, 0.02, -1.158, 0.02]]),
-    ("guards/bent_edge_pressed", "", &[[2.559, 0.02, 0.0, 0.02]]),
-];
-
 #[test]
 fn factors_of_plates_on_nodes() {
-    for (name, key, right) in FACTORS {
-        let Some(path) = file(name) else { return };
-        let set: Vec<String> = Some(key.to_owned()).filter(|key| !key.is_empty()).into_iter().collect();
+    for (name, key, right) in rows::<Vec<(String, String, Vec<[f64; 4]>)>>("mechanics5_plates", "factors") {
+        let Some(path) = file(&name) else { return };
+        let set: Vec<String> = Some(key.clone()).filter(|key| !key.is_empty()).into_iter().collect();
         let case = Case::from_file(&path, &set).unwrap();
         let tips = stress_intensity(&case, &[StressIntensityMethod::ElementFreeGalerkin]).unwrap();
         for (tip, right) in tips.iter().zip(right) {
             let intensity = tip.methods[0].intensity;
             let [k_i, k_ii] = [intensity.k_i, intensity.k_ii].map(|k| 1e-6 * k.unwrap());
-            println!("{name} {key}: {k_i:.3} {k_ii:.3} for {right:?}");
             assert!((k_i - right[0]).abs() < right[1] && (k_ii - right[2]).abs() < right[3], "{name} {key}: {k_i} {k_ii}");
         }
     }
@@ -272,14 +225,6 @@ fn factors_are_continuous_where_means_begin() {
 
 // Input of `field/mechanics5` of the shared data: units of formulas, words of refusals, rollers.
 
-/// A folder of the shared data in one of its own.
-fn folder(readme: &str) -> Option<TempDir> {
-    let from = shared(readme)?;
-    let dir = tempdir().unwrap();
-    copy(from.parent().unwrap(), dir.path());
-    Some(dir)
-}
-
 /// A file with one text for another.
 fn changed(folder: &Path, file: &str, [old, new]: [&str; 2]) -> String {
     let text = fs::read_to_string(folder.join(file)).unwrap();
@@ -290,17 +235,15 @@ fn changed(folder: &Path, file: &str, [old, new]: [&str; 2]) -> String {
 
 #[test]
 fn a_formula_of_residual_stress_has_the_units_of_its_key() {
-    let Some(dir) = folder("field/mechanics5/formula_units/README.md") else { return };
+    let Some(dir) = folder("field/mechanics5/formula_units") else { return };
     let (folder, bare) = (dir.path(), "residual_stress = \"-20*exp(-x^2)\"");
     for set in ["", " --set material.poisson_ratio=0.3"] {
         let (code, said) = command(folder, &format!("predict us_residual.toml{set} --out none"));
         assert_eq!(code, 2, "{said}");
-        assert_says(
+        assert_holds(
             &said,
-            &[
-                "us_residual.toml:15", "loading.residual_stress = ", "specimen.width_in", "residual_stress_ksi",
-                "residual_stress_mpa",
-            ],
+            "us_residual.toml:15 | loading.residual_stress =  | specimen.width_in | residual_stress_ksi | \
+            residual_stress_mpa",
         );
     }
     let rows: String =
@@ -324,15 +267,13 @@ fn a_formula_of_residual_stress_has_the_units_of_its_key() {
     }
     let file = changed(folder, "us_residual.toml", [bare, "residual_stress_ksi = \"1\"\nresidual_stress_mpa = \"7\""]);
     let (code, said) = command(folder, &format!("check {file}"));
-    assert!(
-        code == 2 && said.contains("loading.residual_stress_ksi = \"1\"") && said.contains("conflicts with residual_stress_mpa"),
-        "{said}"
-    );
+    assert!(code == 2 && said.contains("loading.residual_stress_ksi = \"1\""), "{said}");
+    assert!(said.contains("conflicts with residual_stress_mpa"), "{said}");
 }
 
 #[test]
 fn refusals_do_not_lead_to_another_plate() {
-    let Some(dir) = folder("field/mechanics5/refusals/README.md") else { return };
+    let Some(dir) = folder("field/mechanics5/refusals") else { return };
     for file in ["ellipse.toml", "round_rect.toml"] {
         let (code, said) = command(dir.path(), &format!("check {file}"));
         assert!(code == 2 && said.contains("save it as DXF") && said.contains("circles") && !said.contains("remove"), "{said}");
@@ -361,7 +302,7 @@ fn refusals_do_not_lead_to_another_plate() {
 /// The work of narrow rollers does not depend on how nodes lie beside them, and what is left of a severed plate asks for no warning.
 #[test]
 fn narrow_rollers_do_work_over_their_width() {
-    let Some(dir) = folder("validation/pmma_scb_30/README.md") else { return };
+    let Some(dir) = folder("validation/pmma_scb_30") else { return };
     for width in ["1.0", "0.2"] {
         let file = changed(dir.path(), "case.toml", ["contact_width_mm = 1.0", &format!("contact_width_mm = {width}")]);
         for tolerance in ["2", "0.5"] {

@@ -124,7 +124,6 @@ fn readings_of_a_panel_narrow_what_it_has_left() {
         let left = panel.cycles.last().unwrap() - own_of(panel, 30.0 * MM).cycles.last().unwrap();
         covered += usize::from((with_own[0]..=with_own[2]).contains(&left));
     }
-    println!("width with own readings over that without {narrower:.3}, {covered} of 34 in their band");
     assert!(narrower < 0.92 && covered >= 27, "{narrower} {covered}");
 }
 

@@ -49,7 +49,6 @@ fn at_pivot_of_trial(lot: &Population) -> [f64; 2] {
 }
 
 fn check(name: &str, value: f64, expected: f64, tolerance: f64) {
-    println!("{name}: {value:.5}, trial {expected}");
     assert!((value - expected).abs() <= tolerance, "{name}: {value} against {expected} ± {tolerance}");
 }
 
@@ -284,7 +283,6 @@ fn bands_of_few_panels_are_wide_enough() {
             judged += others.count();
         }
         let (coverage, half) = (inside as f64 / judged as f64, half / groups.len() as f64);
-        println!("{count} panels: coverage {coverage:.3}, half width {half:.3} of life, trial {width}");
         assert!(coverage > 0.93, "{count} panels: {coverage}");
         assert!((half / width - 1.0).abs() < 0.25, "{count} panels: {half} for {width}");
     }

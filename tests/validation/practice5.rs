@@ -1,59 +1,23 @@
 //! Cases of users (`field/practice5` of the shared data): the right value within what its page states, or the cause by name.
 
-use std::fs;
-
-use serde::Deserialize;
-use serde_json::Value;
-
 use crate::interface::cli::{perilife, texts};
-use crate::support::desk::json;
 use crate::support::field;
-use crate::support::field::{command, is_near, kind, predicted, predicted as run};
-use crate::support::rows::{assert_says, rows};
+use crate::support::field::{command, is_near, kind, predicted};
+use crate::support::rows::rows;
 
 // Laws, tables of rates and readings as users brought them: the right value within what its page states, or the cause by name (shared data).
 
-/// Arguments of a command, its exit code, words of what it says, and places in files of results with the value that is right and the relative
-/// difference that its page allows.
-type Row = (String, i32, Vec<String>, Vec<(String, String, f64, f64)>);
-
-/// Commands of a kind in its folder, one after the other.
-#[derive(Deserialize)]
-struct Kind {
-    kind: String,
-    rows: Vec<Row>,
-}
-
 #[test]
 fn laws_and_tables_of_practice_give_the_right_value_or_the_cause() {
-    for Kind { kind, rows } in rows::<Vec<Kind>>("practice5_laws", "kinds") {
-        let Some(own) = field::kind(&kind) else { return };
-        for (command, exit, words, figures) in &rows {
-            for folder in ["out", "out_fit"] {
-                // Fits are kept for the predictions behind them.
-                if command.ends_with(folder) && own.path().join(folder).is_dir() {
-                    fs::remove_dir_all(own.path().join(folder)).unwrap();
-                }
-            }
-            let (code, said) = field::command(own.path(), command);
-            assert_eq!(code, *exit, "{kind}: {command}: {said}");
-            assert_says(&format!("{kind}: {command}: {said}"), words);
-            for (file, place, right, slack) in figures {
-                let object = json(own.path().join(file));
-                let value = object.pointer(place).and_then(Value::as_f64).unwrap_or(f64::NAN);
-                println!("{kind}: {command}: {place} {value}, {right} is right within {slack}");
-                assert!((value / right - 1.0).abs() <= *slack, "{kind}: {command}: {place} {value}, {right} is right");
-            }
-        }
-    }
+    field::hold_rows("practice5_laws", "practice5");
 }
 
 /// One reading says where the crack is and nothing of its rate.
 #[test]
 fn every_quantile_of_one_reading_is_that_of_the_lot() {
-    let Some(dir) = field::kind("few_readings_of_a_plate") else { return };
-    assert_eq!(field::command(dir.path(), "calibrate lot.toml --out out_fit").0, 0);
-    let (_, result) = field::predicted(dir.path(), "plate.toml --measured read1.csv");
+    let Some(dir) = kind("few_readings_of_a_plate") else { return };
+    assert_eq!(command(dir.path(), "calibrate lot.toml --out out_fit").0, 0);
+    let (_, result) = predicted(dir.path(), "plate.toml --measured read1.csv");
     let [own, lot] = ["/measured", "/measured/of_lot"].map(|place| result.pointer(place).unwrap());
     for quantile in ["remaining_cycles_p05", "remaining_cycles_p50", "remaining_cycles_p95"] {
         assert!(own[quantile].is_f64() && own[quantile] == lot[quantile], "{quantile}: {own}");
@@ -114,17 +78,15 @@ fn a_life_by_cycles_outside_the_law_is_told() {
 #[test]
 fn shorter_cracks_than_that_of_a_retarded_run_are_retarded() {
     let Some(dir) = kind("short_cracks_retarded") else { return };
-    let (_, result) = run(dir.path(), "run.toml --sensitivities");
+    let (_, result) = predicted(dir.path(), "run.toml --sensitivities");
     is_near(&result["life_cycles"], 2_537_482.0, 1e-3, "life");
     let all = result["sensitivities"].as_array().unwrap();
     let shorter = all.iter().find(|row| row["input"] == "initial crack length" && row["change"] == "-10 %").unwrap();
     assert!((shorter["change_of_life_percent"].as_f64().unwrap() - 11.01).abs() < 0.2, "{shorter}");
     let retardation = result["checks"].as_array().unwrap().iter().find(|check| check["name"] == "retardation").unwrap();
-    assert!(
-        retardation["verdict"] == "caution" && retardation["words"].as_str().unwrap().contains("4.05 × the life without it"),
-        "{retardation}"
-    );
-    let (_, result) = run(dir.path(), "fleet.toml");
+    assert!(retardation["verdict"] == "caution", "{retardation}");
+    assert!(retardation["words"].as_str().unwrap().contains("4.05 × the life without it"), "{retardation}");
+    let (_, result) = predicted(dir.path(), "fleet.toml");
     for (quantile, wanted) in [("p05", 3_936_729.0), ("p50", 5_086_135.0), ("p95", 6_417_585.0)] {
         is_near(&result["fleet"]["life_cycles"][quantile], wanted, 0.03, quantile);
     }
@@ -133,7 +95,7 @@ fn shorter_cracks_than_that_of_a_retarded_run_are_retarded() {
 #[test]
 fn a_fleet_lives_on_where_its_run_is_cut_off() {
     let Some(dir) = kind("fleet_cut_off") else { return };
-    let (said, result) = run(dir.path(), "fleet.toml");
+    let (said, result) = predicted(dir.path(), "fleet.toml");
     let lives = &result["fleet"]["life_cycles"];
     is_near(&lives["p05"], 135_356.0, 0.01, "5 %");
     is_near(&lives["p50"], 210_979.0, 0.01, "50 %");
@@ -147,13 +109,13 @@ fn a_fleet_lives_on_where_its_run_is_cut_off() {
 fn all_plates_of_a_fleet_are_inspected_after_the_same_cycles() {
     let Some(dir) = kind("fleet_looked_at") else { return };
     let asked = "fleet.toml --inspect-from 6.0 --factor 3 --pod 5.0,12.0";
-    let (said, result) = run(dir.path(), &format!("{asked} --first-inspection 115191"));
+    let (said, result) = predicted(dir.path(), &format!("{asked} --first-inspection 115191"));
     let (missed, looks) = (result["fleet"]["missed"].as_f64().unwrap(), &result["fleet"]["inspections"]);
     assert!((missed - 2.495e-3).abs() < 2e-4, "{missed}");
     assert_eq!((&looks["break_before_first_inspection"], &looks["first_inspection_cycles"]), (&7.into(), &115_191.0.into()));
     is_near(&looks["interval_cycles"], 22_451.0, 5e-3, "interval");
     assert!(said.contains("inspected after 115191 cycles, then every 22 "), "{said}");
-    let (said, result) = run(dir.path(), asked);
+    let (said, result) = predicted(dir.path(), asked);
     is_near(
         &result["fleet"]["inspections"]["first_inspection_cycles"],
         115_191.0 * (1.0 + 0.08 * 1.645_f64).powf(-2.874),
@@ -167,7 +129,7 @@ fn all_plates_of_a_fleet_are_inspected_after_the_same_cycles() {
 fn lengths_of_inspections_have_the_unit_of_the_run_or_their_own() {
     let Some(dir) = kind("us_inspections") else { return };
     for lengths in ["--inspect-from 0.25 --pod 0.2,0.5", "--inspect-from 6.35mm --pod 5.08mm,0.5in"] {
-        let (said, result) = run(dir.path(), &format!("case.toml --units us --factor 3 {lengths}"));
+        let (said, result) = predicted(dir.path(), &format!("case.toml --units us --factor 3 {lengths}"));
         is_near(&result["inspections"]["interval_cycles"], 30_416.0, 1e-3, lengths);
         is_near(&result["inspections"]["missed"], 3.322e-3, 0.01, lengths);
         assert!(said.contains("from a = 0.2500 inch") && said.contains("a50 0.2000 inch, a90 0.5000 inch"), "{said}");
@@ -182,14 +144,14 @@ fn lengths_of_inspections_have_the_unit_of_the_run_or_their_own() {
 fn a_thick_plate_is_told_its_life_by_zones_of_plane_strain() {
     let Some(dir) = kind("thick_plate_retarded") else { return };
     for (case, wanted) in [("wheeler.toml", 273_712.0), ("newman.toml", 195_772.0)] {
-        let (said, result) = run(dir.path(), case);
+        let (said, result) = predicted(dir.path(), case);
         let words = "than plane strain at the tip needs, 7.31 mm at the start and 29.40 mm at the end";
         assert!(said.contains(words) && said.contains("(non-conservative); set material.plane = \"strain\""), "{said}");
         let life: f64 =
             said.split("zones of plane strain the life is ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
         is_near(&life.into(), wanted, 1e-3, case);
         assert!(result["warnings"].as_array().unwrap().iter().any(|line| line.as_str().unwrap().contains(words)));
-        let (said, result) = run(dir.path(), &format!("{case} --set material.plane=strain"));
+        let (said, result) = predicted(dir.path(), &format!("{case} --set material.plane=strain"));
         is_near(&result["life_cycles"], wanted, 1e-3, case);
         assert!(!said.contains("plastic zones of plane"), "{said}");
     }

@@ -72,7 +72,6 @@ fn check<const N: usize>((names, ends_least): ([&str; N], usize)) {
     for record in &records {
         let limit = limits::of(&record.sweep.name, record.method).expect("a row of every method");
         let name = format!("{} by {}", record.sweep.name, record.method);
-        println!("{name}: {:?}, committed {:?}", record.ends, limit.ends);
         assert_eq!(record.is_safe, limit.is_safe, "{name}");
         for (fresh, committed) in record.ends.into_iter().zip(limit.ends) {
             assert_eq!(fresh.is_some(), committed.is_some(), "{name}: {fresh:?} and {committed:?}");

@@ -196,7 +196,6 @@ fn what_the_program_chooses_gives_the_constants_of_bonds() {
     let on_points = calibration(&[]);
     let [chosen, on_points] = [&chosen, &on_points].map(|case| engine_fit(case, &case.curves));
     let [a, b] = [&chosen, &on_points].map(|fit| fit.record.constants);
-    println!("A {:.4e} for {:.4e}, p {:.4} for {:.4}", a.a, b.a, a.p, b.p);
     // The spacing that the program takes is the one of the file, so that both A belong to one horizon. K of the two differs by up to 0.5 %.
     assert!((chosen.bonds.unwrap().horizon / on_points.bonds.unwrap().horizon - 1.0).abs() < 1e-9);
     assert!((a.a / b.a - 1.0).abs() < 0.02 && (a.p - b.p).abs() < 0.01, "{a:?} {b:?}");

@@ -75,10 +75,9 @@ fn known(horizon: f64) -> (f64, f64) {
 fn the_engine_recovers_its_own_constants() {
     let (panel, figures, mut found) = fits(4.0, 0.0, 1);
     let found = in_terms_of_bonds(found.remove(0), &panel, [figures.horizon, figures.spacing]).unwrap();
-    let (a, p) = known(figures.horizon);
+    let (_, p) = known(figures.horizon);
     let constants = found.record.constants;
     let (rms, life) = (found.record.rms_life_error(), found.record.life_fitted() / found.record.life_measured());
-    println!("A {} against {a}, p {} against {p}, rms {rms}, life {life}", constants.a, constants.p);
     // Blocks of a run are good to 0.2 % in cycles.
     assert!((constants.p - p).abs() < 0.02, "p = {}", constants.p);
     assert!(rms < 1e-3, "{rms}");
@@ -207,7 +206,6 @@ fn a_drawn_panel_is_fitted_as_the_standard_one() {
     let drawn = format!("{PLATE}{}", PLATES[0].1);
     let by_drawing = fitted(&calibration(&drawn, REST, 2.0, whole));
     let [of_standard, of_drawing] = [&by_standard, &by_drawing].map(|fit| (fit.record.constants.a, fit.record.constants.p));
-    println!("standard {of_standard:?}, drawn {of_drawing:?}");
     // Both read K of the same lattice at other lengths, each to some tenths of a percent.
     assert!((of_drawing.1 / of_standard.1 - 1.0).abs() < 0.003, "{of_standard:?} {of_drawing:?}");
     // The rate at the pivot, where A and p do not trade against each other: by the field, whose K both fits have.

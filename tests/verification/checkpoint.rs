@@ -13,7 +13,7 @@ use crate::support::rows::rows;
 
 /// Keeps every checkpoint as the bytes of its file, and the blocks before it.
 #[derive(Default)]
-struct Keeping {
+pub struct Keeping {
     kept: Mutex<Vec<(Vec<u8>, usize)>>,
     blocks: Mutex<usize>,
     /// Blocks after which the run is cancelled.
@@ -23,7 +23,7 @@ struct Keeping {
 }
 
 impl Keeping {
-    fn kept(self) -> Vec<(Vec<u8>, usize)> {
+    pub fn kept(self) -> Vec<(Vec<u8>, usize)> {
         self.kept.into_inner().unwrap()
     }
 }
@@ -204,11 +204,9 @@ fn damaged_and_foreign_checkpoints_are_refused() {
     refused(Checkpoint::from_bytes(&older), "written by perilife 9.1.0; this is ");
 
     // Whatever says something else about the run makes it another case; the name of a case does not.
-    let others = [
-        "loading.stress_max_mpa=71", "fatigue.a=6451", "model.solver=multigrid", "stop.crack_length_mm=41",
-        "specimen.width_mm=62", "material.poisson_ratio=0.31",
-    ];
-    for other in others {
+    let others = "loading.stress_max_mpa=71 fatigue.a=6451 model.solver=multigrid stop.crack_length_mm=41 \
+                  specimen.width_mm=62 material.poisson_ratio=0.31";
+    for other in others.split_whitespace() {
         let other_case = case(&[other]);
         assert!(!read(&bytes).belongs_to(&other_case), "{other}");
         let error = resume(&other_case, read(&bytes), &Silent).expect_err(other);

@@ -37,7 +37,6 @@ fn its_rate_is_the_slope_of_its_length() {
         let governing = GoverningCrack::of(&case.specimen, &run.curve);
         let [first, last] = [&run.curve[0], &run.curve[run.curve.len() - 1]];
         let error = counted(&run, &governing) / run.life_cycles() - 1.0;
-        println!("{name}: {} rows, ∫ da/(da/dN) off by {:+.2} % of the cycles", run.curve.len(), 100.0 * error);
         assert!(error.abs() < 0.003, "{name}: {error}");
         // The crack that came to the length ends the run, whatever the others sum to.
         assert!((governing.length(last) / (stop * MM) - 1.0).abs() < 1e-9, "{name}: {}", governing.length(last) / MM);
@@ -58,10 +57,8 @@ fn its_rate_is_the_slope_of_its_length() {
 fn the_length_to_stop_at_is_that_of_one_crack() {
     let text = cracked_plate(80.0, 120.0, PLATES[1].1);
     assert!(case(&text, &format!("{NODES} stop.crack_length_mm=11")).is_ok());
-    assert_refusal(
-        case(&text, &format!("{NODES} stop.crack_length_mm=10")),
-        &["stop.crack_length_mm = 10", "initial crack length 10 mm"],
-    );
+    let refused = case(&text, &format!("{NODES} stop.crack_length_mm=10"));
+    assert_refusal(refused, &["stop.crack_length_mm = 10", "initial crack length 10 mm"]);
 }
 
 // The error that is stated with a life is above the one it has; `perilife verify estimates` has more plates and tolerances.
@@ -98,7 +95,6 @@ fn a_coarse_run_states_a_large_error() {
     let stated = error_estimate(&coarse, &run).unwrap().life_percent;
     let tips = compare(&run, reference.tips().unwrap(), f64::INFINITY);
     let off = largest(tips.iter().flat_map(|tip| tip.cycles)).abs();
-    println!("{off:.2} of {stated:.2} %");
     assert!(off > 1.0 && off < stated && stated < 4.0, "{off} of {stated}");
 }
 
@@ -154,7 +150,6 @@ fn compared(runs: &[(&str, &[&str])]) {
         for target in [20.0, 20.5, 21.0, 22.0, 24.0, 26.0, 28.0, 29.5] {
             let point = run.curve.iter().find(|point| point.crack_length >= target * MM).unwrap();
             let found = by_compliance(point.work);
-            println!("{name}: {:.3} mm, by compliance {:.3} mm", point.crack_length / MM, found / MM);
             // A tenth of the spacing of 1 mm; reached are 0.04, and 0.08 while the front of a clean cut takes its shape.
             assert!((point.crack_length - found).abs() < 0.1 * MM, "{name}: {} and {}", point.crack_length / MM, found / MM);
         }

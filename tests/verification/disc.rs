@@ -154,7 +154,6 @@ fn a_coarse_disc_is_not_split_by_a_critical_stretch() {
     let band = grid.point_at[middle].iter().flatten().filter(|&&point| last.damage[point as usize] > 0.1).count();
     let end = fracture.history.last().unwrap();
     let whole = elastic(CONTROL, DIAMETER / 35.0, 0.5 * end.displacement).unwrap().load;
-    println!("damage up to {worst:.3}, band of {band} points, {:.4} of the load without damage", end.load / whole);
     assert!(end.broken_bonds > 500 && (0.1..0.35).contains(&worst), "{} bonds, {worst}", end.broken_bonds);
     assert!(band >= 7, "a crack would be one to three points wide: {band}");
     assert!((0.98..1.001).contains(&(end.load / whole)), "{} N, {whole} N without damage", end.load);

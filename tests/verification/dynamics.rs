@@ -229,7 +229,6 @@ fn a_velocity_follows_a_traction() {
         worst = worst.max((row.kinetic + row.strain - row.work).abs() / largest);
     }
     assert!(run.history.iter().any(|row| row.time < 1e-5 && row.work > 1e-3 * largest), "the traction acts before");
-    println!("energy astray {worst:.2e}");
     assert!(worst < 5e-3, "{worst:.2e}");
 }
 
@@ -256,7 +255,6 @@ fn platens_press_in_time() {
     // Mean over the time after the way is done, over the waves that are left.
     let after: Vec<f64> = run.history.iter().filter(|row| row.time > 1.1e-4).map(|row| row.load).collect();
     let mean = after.iter().sum::<f64>() / after.len() as f64;
-    println!("energy astray {lost:.2e}; load {mean:.2} N, at rest {rest:.2} N");
     assert!(lost < 5e-3, "{lost:.2e}");
     assert!((mean / rest - 1.0).abs() < 0.02, "{mean} N, at rest {rest} N");
 }

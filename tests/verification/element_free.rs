@@ -196,7 +196,6 @@ fn a_slot_along_a_line_of_the_grid_is_a_slot_like_others() {
     };
     for (on_line, beside) in [(1.25, 1.2501), (2.5, 2.501)] {
         let [on_line, beside] = [on_line, beside].map(k);
-        println!("{on_line} {beside}");
         assert!((on_line / beside - 1.0).abs() < 1e-3, "{on_line} {beside}");
     }
 }

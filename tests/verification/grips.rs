@@ -86,7 +86,6 @@ fn a_clamped_edge_crack() {
             (factors(plate([100.0, 50.0], [[0.0, -25.0], [0.0, 0.0]], &moved(turned), &[engine])), 16.38),
             (factors(case(single, &moved(""), &[engine])), 16.38),
         ];
-        println!("{engine}: {found:.3?}");
         for ([k_i, _], right) in found {
             assert!((k_i / right - 1.0).abs() < 0.01, "{engine}: {k_i}, {right}");
         }
@@ -105,7 +104,6 @@ fn a_life_between_grips() {
         let (first, last) = (&run.curve[0], run.curve.last().unwrap());
         let lost = (first.work - last.work) / (last.crack_length - first.crack_length);
         let released = 2.0 * 1e-3 * 10.377e6_f64.powi(2) / 70e9;
-        println!("{engine}: {cycles:.4e} cycles, work lost over released {:.4}", lost / released);
         assert!((cycles / 1.79e6 - 1.0).abs() < 0.02, "{engine}: {cycles}");
         assert!((lost / released - 1.0).abs() < 0.02, "{engine}: {lost}, {released}");
     }
@@ -126,7 +124,6 @@ fn engines_agree_between_grips() {
         let of = |set: &[&str]| factors(plate([40.0, 50.0], crack, &format!("displacement_max_mm = 0.05\n{words}"), set));
         let [points, nodes] = ENGINES.map(|engine| of(&[engine]));
         let size = nodes[0].hypot(nodes[1]);
-        println!("{name}: points {points:.3?}, nodes {nodes:.3?}");
         assert!((0..2).all(|i| (points[i] - nodes[i]).abs() < 0.015 * size), "{name}: {points:?}, {nodes:?}");
         // Sheared, every part of the edge is moved and held: one plate for all solvers.
         for set in if name == "sheared" { ["model.solver=\"multigrid\""].as_slice() } else { &[] } {

@@ -141,7 +141,6 @@ fn the_engine_ends_at_the_same_crack_length() {
     ] {
         let engine = predict(&case(panel, &[driver, "stop.cycles_max=1e7", strength]), &Silent).unwrap();
         let by_hand = hand_run(panel, &[&hand[..], &[strength]].concat());
-        println!("{driver}, {reason}: {} and {} mm", engine.crack_length_final() / MM, by_hand.crack_length_final() / MM);
         assert_eq!((engine.stop, by_hand.stop), (reason, reason));
         let [.., before, last] = &engine.curve[..] else { panic!("{} rows", engine.curve.len()) };
         let end = by_hand.crack_length_final();

@@ -18,7 +18,6 @@ fn case(path: &Path, set: &[&str]) -> Case {
 
 fn is_near(name: &str, found: [f64; 2], right: [f64; 2]) {
     let found = found.map(|k| k / 1e6);
-    println!("{name}: {found:.4?}, finite elements {right:?}");
     let off = (found[0] - right[0]).hypot(found[1] - right[1]);
     assert!(off < 0.01 * right[0].hypot(right[1]), "{name}: {found:?}, {right:?}");
 }

@@ -45,7 +45,6 @@ fn pressure_adds_to_a_stress_and_follows_the_crack() {
     assert!((both / pulled / 1.5 - 1.0).abs() < 0.005, "{both}, {pulled}");
     let [pressed, pulled] = ["crack_pressure_mpa = 50", "stress_max_mpa = 50"].map(|l| run(&plate(crack, l, 1.0)));
     let (life, right) = (pressed.life_cycles(), pulled.life_cycles());
-    println!("life {life}, under a stress {right}");
     assert!((life / right - 1.0).abs() < 0.01, "{life}, {right}");
     assert_eq!(pressed.stop, StopReason::Severed);
 }
@@ -88,7 +87,6 @@ fn pure_shear() {
         );
         let size = 50.0 * (PI * 8e-3_f64).sqrt();
         for tip in tips(&case) {
-            println!("{crack}: {tip:.4?}, infinite plate {size:.4}");
             let [k_i, k_ii, _] = tip.map(|k| k / size);
             // Long against the crack, the sides add less than a percent.
             assert!((k_i - right[0]).abs() < 0.015 && (k_ii.abs() - right[1]).abs() < 0.015, "{tip:?}");
@@ -144,7 +142,6 @@ fn compliance_of_a_compact_specimen() {
     let found = |work: f64| 70e9 * 2e-3 * 0.1e-3 / (work / 0.1e-3);
     let ends = [&kept.curve[0], kept.curve.last().unwrap()];
     let [less, more] = ends.map(|row| [found(row.work), handbook(row.crack_length)]);
-    println!("E B v/P of [points, handbook]: {less:.3?} to {more:.3?}");
     assert!(((more[0] - less[0]) / (more[1] - less[1]) - 1.0).abs() < 0.015, "{less:?}, {more:?}");
 }
 

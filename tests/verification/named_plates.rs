@@ -33,7 +33,6 @@ fn cracks_form_by_the_line_and_then_grow() {
     let (grown, whole) = (life(""), life(&line("")));
     let phase = whole.phase_one.unwrap();
     let first = phase.cycles.unwrap();
-    println!("K_tg {:.4}, N_I {first:.0}, N_II {:.0}", phase.concentration.unwrap(), whole.life_cycles() - first);
     assert!((phase.concentration.unwrap() / 3.008 - 1.0).abs() < 0.01, "{phase:?}");
     assert!((first / (1e5 * (300.0 / (0.8 * 3.008 * 100.0_f64)).powi(5)) - 1.0).abs() < 0.05, "{first}");
     assert!(((whole.life_cycles() - first) / grown.life_cycles() - 1.0).abs() < 1e-9);
@@ -88,7 +87,6 @@ fn cracks_begin_at_arcs_of_any_sides() {
         let crack = "cracks = [{ from_mm = [-20, 0], to_mm = [-17, 0] }]";
         found.push(k(&format!("kind = \"plate\"\noutline_mm = {outline}\nthickness_mm = 2\n{crack}")));
     }
-    println!("{found:?}");
     assert!(found.iter().all(|k| (k / 14.09 - 1.0).abs() < 0.005), "{found:?}");
 }
 

@@ -115,7 +115,6 @@ fn the_represented_length_swings_about_the_requested_one() {
         }
         let mean = excess.iter().sum::<f64>() / f64::from(samples);
         let most = excess.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
-        println!("{angle}°: mean {mean:.4}, most {most:.3}");
         assert!(mean.abs() < 0.05 && most > 0.1 && most < 0.6, "{angle}°: mean {mean}, most {most}");
     }
 }

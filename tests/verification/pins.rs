@@ -39,6 +39,5 @@ fn points_take_the_contact_of_nodes() {
     let points = Case { model: Model::Points(case.points()), ..case.clone() };
     let of_nodes = initial_tips::<NodePlate>(&case).unwrap().tips[0].factors.unwrap()[0];
     let of_points = initial_tips::<PointPlate>(&points).unwrap().tips[0].factors.unwrap()[0];
-    println!("K on points over nodes {:.4}", of_points / of_nodes);
     assert!((of_points / of_nodes - 1.0).abs() < 0.01);
 }

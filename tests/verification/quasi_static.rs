@@ -151,7 +151,6 @@ fn pulled_on_beyond_severing_the_plate_is_severed() {
         perilife_scenes::run(&Scene::from_toml(&text, "pulled", Path::new("."), &[]).unwrap(), &Silent).unwrap()
     };
     let [short, long] = [0.1, 0.15].map(pulled);
-    println!("{} at {:.2} N, {} at {:.2} N", short.end, short.peak_load(), long.end, long.peak_load());
     assert!((long.peak_load() / short.peak_load() - 1.0).abs() < 1e-6, "{} {}", long.peak_load(), short.peak_load());
     assert_eq!(long.end, SceneEnd::Separated);
     let last = long.history.last().unwrap();

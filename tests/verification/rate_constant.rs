@@ -149,7 +149,6 @@ fn compare(kernels: &[Kernel], exponents: &[f64]) {
         let factors = factors(kernel);
         for &p in exponents {
             let difference = rate_constant(kernel, p).unwrap().ln() - computed(kernel, &factors, p);
-            println!("{kernel}, p = {p}: {difference:+.2e}");
             let bound = if p <= 2.0 { SCATTER[0] } else { SCATTER[1] };
             assert!(difference.abs() < bound, "{kernel}, p = {p}: ln β differs by {difference}");
         }

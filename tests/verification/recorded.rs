@@ -119,7 +119,6 @@ fn the_k_of_a_run_on_nodes_serves_other_laws() {
     let (done, recorded) = run(&case);
     let own = recorded.unchanged();
     is_near(recorded.life(&*growth_law(&case).unwrap(), own).cycles, done.life_cycles(), 1e-10, "nodes");
-    println!("cycles between rows beside a straight ln K: {:.2e}", recorded.misfit());
     assert!(recorded.misfit() < 5e-3, "{}", recorded.misfit());
     let mut steeper = case.clone();
     steeper.law = LawSource::Paris(ParisLaw { c: 1e-11, m: 3.6 });

@@ -94,7 +94,6 @@ fn fields_on_the_faces_of_a_centre_crack() {
         let (s, root) = (a / 15.0, (PI * a * 1e-3_f64).sqrt());
         let closed = 80.0 * root * (-0.42 * s * s).exp() * (1.0 - s * s / PI);
         let off = (closed - exact(a * 1e-3, weld)) / (80.0 * root);
-        println!("Terada, a {a}: off {off:.5}");
         assert!(off.abs() < 0.01, "{off}");
     }
 }
@@ -105,7 +104,6 @@ fn the_strip_of_the_handbook_and_tables() {
     for (x, bound) in [(0.1, 0.002), (0.4, 0.006), (0.6, 0.004), (0.7, 0.002), (0.8, 0.004)] {
         let a = 0.05 * x;
         let ratio = centre_crack(a, 0.1, |_| 1.0) / ((PI * a).sqrt() * (PI * x / 2.0).cos().powf(-0.5));
-        println!("2a/W {x}: Green function over secant {ratio:.5}");
         assert!((ratio - 1.0).abs() < bound, "{x}: {ratio}");
     }
     let dir = tempfile::tempdir().unwrap();
@@ -127,7 +125,6 @@ fn the_strip_of_the_handbook_and_tables() {
     let [by_formula, by_grid, by_line] =
         ["residual_stress = \"60 - 2*x + y\"", "residual_stress_file = \"grid.csv\"", "residual_stress_file = \"line.csv\""]
             .map(of);
-    println!("{by_formula:.5?} {by_grid:.5?} {by_line:.5?}");
     for (a, b) in by_formula.iter().zip(&by_grid) {
         assert!((a[2] - b[2]).abs() < 1e-6 * a[2].abs(), "{a:?}, {b:?}");
     }
@@ -249,7 +246,6 @@ fn bearing_and_bypass() {
     let both = k(&format!("stress_max_mpa = 100\n{edges}\n{}", pin(1.5)));
     let bypass = k(&format!("stress_max_mpa = 80\n{edges}"));
     let bearing = k(&format!("stress_max_mpa = 20\n{edges}\n{}", pin(7.5)));
-    println!("both {both:.6}, bypass {bypass:.6}, bearing {bearing:.6}");
     assert!((both - bypass - bearing).abs() < 1e-6 * both, "{both}, {bypass}, {bearing}");
     let refused = [
         (format!("{edges}\npins = [{{ hole = 0, direction = [0, -1] }}]"), "loading.pins[0].bearing_ratio"),
@@ -261,7 +257,6 @@ fn bearing_and_bypass() {
     ];
     for (loading, key) in refused {
         let error = plate(&format!("stress_max_mpa = 100\n{loading}")).unwrap_err();
-        println!("{error}");
         assert!(error.contains(key), "{loading}: {error}");
     }
 }
@@ -293,7 +288,6 @@ fn what_does_not_know_residual_stress() {
     ];
     for (specimen, field, law, set, words) in cases {
         let error = case_in(dir.path(), specimen, &format!("{pulled}\n{field}"), law, set).unwrap_err();
-        println!("{error}");
         assert!(error.contains(words), "{field}: {error}");
     }
     // The field ends at 10 mm: the crack of 8 mm is covered, its path is not.
@@ -302,7 +296,6 @@ fn what_does_not_know_residual_stress() {
         let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
         let case = case_in(dir.path(), panel, &format!("{pulled}\n{}", file("short.csv")), WALKER, &keys).unwrap();
         let error = predict(&case, &Silent).unwrap_err().to_string();
-        println!("{error}");
         assert!(error.contains("residual_stress_file") && error.contains("covers only"), "{error}");
     }
 }

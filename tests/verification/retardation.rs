@@ -70,7 +70,6 @@ fn overloads_slow_a_crack_down_as_each_model_says() {
         let cycles: f64 = blocks.iter().map(|block| block[2]).sum();
         let march = grown(blocks, of, model.as_ref(), cycles);
         let length = of.0 + march.at.a / INCH;
-        println!("{name}: {length:.6} in, wanted {wanted}");
         assert!((length / wanted - 1.0).abs() < 1e-3, "{name}: {length} against {wanted}");
         assert_eq!(march.at.cycles, cycles);
     }
@@ -115,7 +114,6 @@ fn a_case_with_a_spectrum_is_retarded_alike() {
         let case = Case::from_toml(&text, "blocks", folder, &[]).unwrap();
         let run = predict(&case, &Silent).unwrap();
         let length = run.crack_length_final() / INCH;
-        println!("{keys}: {length:.6} in, wanted {wanted}, {} rows", run.curve.len());
         // Without order the mean rate of the pass grows the crack, whose overload is then everywhere.
         let bound = if keys.contains("none") { 5e-3 } else { 1e-3 };
         assert!((length / wanted - 1.0).abs() < bound, "{keys}: {length} against {wanted}");
@@ -138,7 +136,6 @@ fn passes_that_are_alike_may_be_jumped_over() {
         let cycles = 200.0 * per_pass;
         let jumped = grown(&blocks, of, Some(&model), cycles).at.a / MM;
         let every = by_hand(&blocks, of, &model, 200);
-        println!("{}: {jumped:.5} mm, every cycle {every:.5} mm", model.kind);
         assert!((jumped / every - 1.0).abs() < 2e-3, "{}: {jumped} against {every}", model.kind);
         let plain = grown(&blocks, of, None, cycles).at.a / MM;
         assert!(jumped < 0.98 * plain, "{}: {jumped} against {plain} alone", model.kind);
@@ -221,7 +218,6 @@ fn both_ends_of_a_front_are_retarded_by_their_own_overloads() {
         }
     }
     let alone = axes("retardation = \"none\"");
-    println!("{retarded:?}, every cycle {front:?}, without retardation {alone:?}");
     for end in 0..2 {
         let grown = |axes: [f64; 2]| axes[end] - flaw.start()[end];
         assert!((grown(retarded) / grown(front) - 1.0).abs() < 2e-3, "{retarded:?} against {front:?}");

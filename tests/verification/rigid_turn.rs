@@ -59,7 +59,6 @@ fn a_rigid_turn_of_a_scene_costs_nothing() {
             // Choices that do not go together are refused, each with a test of its own.
             let Some(scene) = scene(&set) else { continue };
             let cost = cost(&scene);
-            println!("{law}, {way:?}: {cost:.1e}");
             assert!(cost.abs() < ROUND_OFF, "{law}, {way:?}: {cost:e}");
             *counted += 1;
             *went += 1;

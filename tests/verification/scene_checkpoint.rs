@@ -111,12 +111,10 @@ fn damaged_and_foreign_checkpoints_of_scenes_are_refused() {
             assert!(error.to_string().contains("to start the run again"), "{what} at byte {at}: {error}");
         }
     }
-    let others = [
-        "specimen.width_mm=22", "material.fracture_energy_j_m2=205", "model.spacing_mm=0.9", "model.solver=secant",
-        "loading.displacement_mm=0.0061", "loading.steps=21", "loading.iterations_per_step=2", "loading.edges=[\"top\"]",
-        "damage.law=critical_energy", "supports.left={fix=[\"x\"]}",
-    ];
-    for other in others {
+    let others = "specimen.width_mm=22 material.fracture_energy_j_m2=205 model.spacing_mm=0.9 model.solver=secant \
+                  loading.displacement_mm=0.0061 loading.steps=21 loading.iterations_per_step=2 loading.edges=[\"top\"] \
+                  damage.law=critical_energy supports.left={fix=[\"x\"]}";
+    for other in others.split_whitespace() {
         let other_scene = scene(setting, &[other]);
         assert!(!read(&bytes).belongs_to(&other_scene), "{other}");
         let error = perilife_scenes::resume(&other_scene, read(&bytes), &Silent).expect_err(other);

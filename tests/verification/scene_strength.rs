@@ -40,7 +40,6 @@ fn found(kind: BondLawKind, spacing: f64) -> f64 {
         )
     };
     let loads = [0, 20, 45].map(|angle| growth_load(value("square").as_str().unwrap(), &overrides(&keys(angle))).unwrap());
-    println!("{kind}, {spacing} mm: {loads:.1?} N");
     (loads.iter().sum::<f64>() / 3.0 / value("griffith")[0].as_float().unwrap()).powi(2)
 }
 
@@ -49,7 +48,6 @@ fn assert_table(kind: BondLawKind, spacing: f64, percent: f64) {
     let law = BondLaw { kind, kernel, rotation: Rotation::Free, surface_correction: SurfaceCorrection::VolumeAndSurface };
     let (found, table) = (found(kind, spacing), trapping(&law, 3.015));
     let error = 100.0 * (found / table - 1.0);
-    println!("{kind}: {found:.3}, table {table}, {error:+.1} %");
     assert!(error.abs() < percent, "{kind}: {found:.3} for {table}");
 }
 
@@ -121,7 +119,6 @@ fn run(file: &str, set: &[&str]) -> Option<Fracture> {
 
 fn assert_within(what: &str, found: f64, reference: f64, percent: f64) {
     let error = 100.0 * (found / reference - 1.0);
-    println!("{what}: {found:.5}, reference {reference}, {error:+.2} %");
     assert!(error.abs() <= percent, "{what}: {found} is {error:+.2} % from {reference}, bound {percent} %");
 }
 
@@ -163,7 +160,6 @@ fn sheared_square(spacing: f64, path: &[[f64; 2]]) {
         let after = way.iter().position(|at| at[1] <= y).unwrap_or_else(|| panic!("the path ends above {y}: {way:?}"));
         let (a, b) = (way[after - 1], way[after]);
         let found = a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]);
-        println!("path at y = {y} mm: {found:.4}, {x}");
         last = fronts[after].step;
         assert!((found - x).abs() <= 0.03, "path at y = {y} mm: {found} instead of {x}");
     }

@@ -195,7 +195,6 @@ fn a_large_plate_takes_as_few_iterations_as_a_small_one() {
         let set = ["model.symmetry=off", "model.bond_law=bond_based", "material.poisson_ratio=0.3333333333333333"];
         loaded(&case(&specimen, &set), SolverKind::Multigrid).unwrap().iterations
     });
-    println!("{iterations:?}");
     assert!(iterations.iter().all(|&count| count <= iterations_max("centre crack", 3.015)), "{iterations:?}");
 }
 

@@ -3,7 +3,7 @@
 use perilife_base::units::MM;
 use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
 
-use crate::support::plates::{BOND_STRAIN, TIP_FIELD, case};
+use crate::support::plates::{BOND_STRAIN, TIP_FIELD, case, sound};
 
 const PANEL: &str = "kind=\"middle_tension\"\nwidth_mm=48\nlength_mm=60\nthickness_mm=2\ncrack_length_mm=9\n";
 const PLATE: &str = "kind=\"plate\"\nwidth_mm=40\nlength_mm=48\nthickness_mm=2\n";
@@ -17,16 +17,6 @@ fn grow(specimen: &str, set: &[&str]) -> Prediction {
 /// The same by strains of bonds.
 fn grow_by_bonds(specimen: &str, set: &[&str]) -> Prediction {
     grow(specimen, &[&[BOND_STRAIN], set].concat())
-}
-
-/// A run whose curve and pictures are in order.
-fn sound(name: &str, run: &Prediction) {
-    println!("{name}: {} at {:.5e} cycles, {:.3} mm", run.stop, run.life_cycles(), run.crack_length_final() / MM);
-    for pair in run.curve.windows(2) {
-        assert!(pair[1].cycles >= pair[0].cycles && pair[1].crack_length >= pair[0].crack_length, "{name}");
-        assert!(pair[1].cycles.is_finite() && pair[1].crack_length.is_finite(), "{name}");
-    }
-    assert!(run.snapshots.iter().flat_map(|s| &s.displacement).flatten().all(|u| u.is_finite()), "{name}");
 }
 
 fn is_through(run: &Prediction) -> bool {
@@ -45,7 +35,6 @@ fn ageing_everywhere_ends_though_points_detach() {
         assert!(is_through(&run), "{p}: {}", run.stop);
         // A straight crack leaves its points 61 % of their bonds.
         let damage = run.snapshots.last().unwrap().damage.iter().copied().fold(0.0, f64::max);
-        println!("{p}: points have lost up to {:.0} % of their bonds", 100.0 * damage);
         assert!(damage > 0.6, "{p}: {damage}, so this scene tests nothing");
         // Tips cannot be followed through that; no crack is longer than half the plate.
         assert!(run.crack_length_final() <= 24.0 * MM * (1.0 + 1e-9), "{p}: {}", run.crack_length_final() / MM);
@@ -208,10 +197,6 @@ fn low_and_high_exponents_follow_the_load() {
             let run = grow_by_bonds(PANEL, &["model.spacing_mm=2", &load, &format!("fatigue.p={p}"), &a, "stop.cycles_max=1e15"]);
             sound(&format!("p = {p}, {stress} MPa"), &run);
             assert!(is_through(&run), "p = {p}: {}", run.stop);
-            for point in &run.curve {
-                let [left, right] = point.tips[..] else { panic!("two tips") };
-                assert!((left.position[0] + right.position[0]).abs() < 1e-9 && left.position[1].abs() < 1e-9, "p = {p}");
-            }
             run.life_cycles()
         };
         // 1 % keeps the overload at the very end at the same length.
@@ -230,17 +215,12 @@ fn horizon_ratios_agree_or_say_how_wrong_they_are() {
         let run = grow_by_bonds(panel, &set);
         sound(&format!("ratio {ratio}"), &run);
         assert_eq!(run.stop, StopReason::CrackLengthReached, "{ratio}");
-        for point in &run.curve {
-            let [left, right] = point.tips[..] else { panic!("two tips") };
-            assert!((left.position[0] + right.position[0]).abs() < 1e-9 && left.position[1].abs() < 1e-9, "{ratio}");
-        }
         (run.life_cycles(), told)
     };
     let (reference, told) = run(3.015);
     assert!(!told);
     for (ratio, expected, bound) in [(1.5, 0.6, 0.1), (2.0, 1.0, 0.15)] {
         let (life, told) = run(ratio);
-        println!("ratio {ratio}: life over that at 3.015 {:.4}", life / reference);
         assert!((life / reference - expected).abs() < bound, "{ratio}: {}", life / reference);
         assert!(told, "{ratio}");
     }

@@ -184,7 +184,6 @@ fn a_break_on_one_side_ends_the_symmetry() {
             equilibrium.bonds_changed(&body, &bonds, &broken);
             equilibrium.solve(&body, &bonds, &mut displacement).unwrap();
             let whole = loaded_with(body.clone(), bonds.clone(), case.loading.maximum, None).unwrap();
-            println!("{solver}: symmetric {is_symmetric}, work {:.12e} and {:.12e}", equilibrium.work(), whole.work);
             assert!((equilibrium.work() / whole.work - 1.0).abs() < 1e-9, "{solver}");
             assert_eq!(equilibrium.points(&body) < body.points.len(), is_symmetric, "{solver}");
             let part = Loaded { displacement: displacement.clone(), ..whole.clone() };
@@ -274,7 +273,6 @@ fn keeps_its_middle_line(name: &str) {
     let run = predict(&Case::from_file(&path, &["model.spacing_mm=1".to_owned()]).unwrap(), &Silent).unwrap();
     let at = |length: f64| run.curve.iter().find(|point| point.crack_length >= length).unwrap().cycles;
     let first = run.curve[0].tips[0].factors.unwrap()[0] / 1e6;
-    println!("{name}: K_I {first:.4}, {:.4e} cycles to 100 mm", at(0.1));
     assert!((first / k_i - 1.0).abs() < 0.006 && (at(0.1) / life - 1.0).abs() < 0.015, "{name}: {first}, {}", at(0.1));
     assert!(run.curve.iter().all(|point| point.tips[0].position[1].abs() < 0.05e-3), "{name}: off the middle line");
 }

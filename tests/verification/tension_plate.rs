@@ -13,7 +13,6 @@ fn serves_horizons(both: bool) {
             for (_, nu) in [0.1, 1.0 / 3.0].into_iter().enumerate().filter(|(n, _)| both || (i + k) % 2 == *n) {
                 let law = BondLaw { kernel: *kernel, ..BALANCED };
                 let errors = uniform_tension(&strip(0.02, 0.036), &law, nu, 1e-3, ratio, 0.0).unwrap();
-                println!("{kernel}, ratio {ratio}, nu {nu:.3}: {errors:.4?}");
                 assert!(errors.along < bound, "{kernel}, ratio {ratio}, nu {nu}: {errors:?}");
             }
         }

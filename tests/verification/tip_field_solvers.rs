@@ -90,7 +90,6 @@ fn one_life_and_one_path(is_chosen: impl Fn(usize, usize) -> bool) -> usize {
                     runs += 1;
                     let (life, path) = differences(&run, &reference);
                     let what = format!("{plate}, {law}, {solver}, symmetry {symmetry}: life {life:.1e}, path {path:.1e}");
-                    println!("{what}");
                     if !(life < EQUAL && path < EQUAL) {
                         faults.push(what.clone());
                     }

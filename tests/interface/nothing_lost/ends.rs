@@ -6,24 +6,24 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::cargo_bin;
-use tempfile::{TempDir, tempdir};
+use tempfile::TempDir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
-use crate::support::daily::{KINDS, PANEL, content, names, write_inputs};
+use crate::support::daily::{self, KINDS, PANEL, content, names};
 use crate::support::desk::done;
-use crate::support::server::{PATIENCE, wait};
+use crate::support::rows::assert_says;
+use crate::support::server::wait;
 
 /// A run of some seconds.
 const SLOW: [&str; 2] = ["predict", "slow.toml"];
 
 fn inputs() -> TempDir {
-    let dir = tempdir().unwrap();
-    write_inputs(dir.path());
+    let dir = daily::inputs();
     let (plate, _) = PANEL.split_once("[model]").unwrap();
     let law = "[model]\nspacing_mm = 0.8\n[fatigue]\ndriver = \"bond_strain\"\na = 6450.0\np = 2.86\nhorizon_mm = 3.015\n";
     fs::write(dir.path().join("slow.toml"), format!("{plate}{law}[stop]\ncrack_length_mm = 49.8\n")).unwrap();
-    fs::write(dir.path().join("slow_sweep.toml"), crate::support::daily::SWEEP.replace("panel.toml", "slow.toml")).unwrap();
-    let scene = crate::support::daily::SCENE.replace("spacing_mm = 1.0", "spacing_mm = 0.1");
+    fs::write(dir.path().join("slow_sweep.toml"), daily::SWEEP.replace("panel.toml", "slow.toml")).unwrap();
+    let scene = daily::SCENE.replace("spacing_mm = 1.0", "spacing_mm = 0.1");
     let motion = scene.replace("traction", "velocity").replace("stress_mpa = 10.0", "velocity_mm_s = 1000.0\nduration_s = 1e-3");
     let motion = motion.replace("[model]", "density_kg_m3 = 8000.0\n[model]");
     fs::write(dir.path().join("slow_scene.toml"), motion).unwrap();
@@ -39,7 +39,6 @@ fn started(folder: &Path, arguments: &[&str]) -> Child {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let begun = Instant::now();
     // A sweep is at work when one of its cases is: its own folder comes before it says what it leaves.
     let is_sweep = arguments[0] == "sweep";
     let is_begun = || {
@@ -47,10 +46,7 @@ fn started(folder: &Path, arguments: &[&str]) -> Child {
         !is_sweep && names(folder).iter().any(|name| name.starts_with(".out.partial"))
             || sweeps.is_dir() && names(&sweeps).iter().any(|name| name.contains(".partial"))
     };
-    while !is_begun() {
-        assert!(begun.elapsed() < PATIENCE, "nothing is begun");
-        std::thread::sleep(Duration::from_millis(2));
-    }
+    wait("nothing is begun", is_begun);
     process
 }
 
@@ -80,18 +76,14 @@ fn what_appears_meanwhile_stays() {
     ];
     for (number, (is_earlier, appear)) in cases.into_iter().enumerate() {
         if is_earlier {
-            let earlier = perilife(here, &["predict", "panel.toml", "--out", "out", "-q"]);
-            assert!(earlier.status.success(), "{}", texts(&earlier).1);
+            done(here, "predict panel.toml --out out -q");
         }
         let process = started(here, &["predict", "small.toml", "--out", "out", "-q", "--force", "--set", "model.spacing_mm=0.5"]);
         appear(&here.join("out"));
         let before = content(&here.join("out"));
         let (code, stderr) = ended(process);
         assert_eq!(code, Some(4), "{stderr}");
-        assert!(
-            stderr.contains("out: cannot put the results in place: it contains") && stderr.contains("and that stays"),
-            "{stderr}"
-        );
+        assert_says(&stderr, &["out: cannot put the results in place: it contains", "and that stays"]);
         let result = if number == 0 { "out.result".to_owned() } else { format!("out.result-{}", number + 1) };
         assert!(stderr.trim_end().ends_with(&format!("; results are in {result}")), "{stderr}");
         assert!(here.join(&result).join("a_n.csv").is_file() && content(&here.join("out")) == before);
@@ -162,10 +154,7 @@ fn a_signal_says_how_to_go_on() {
     // A process that was started to ignore a signal (nohup) goes on to its end.
     let script = format!("trap '' HUP; exec {:?} {}", cargo_bin("perilife"), call.join(" "));
     let process = Command::new("sh").current_dir(here).args(["-c", &script]).stderr(Stdio::piped()).spawn().unwrap();
-    let begun = Instant::now();
-    while !names(here).iter().any(|name| name.starts_with(".out.partial")) && begun.elapsed() < PATIENCE {
-        std::thread::sleep(Duration::from_millis(2));
-    }
+    wait("nothing is begun", || names(here).iter().any(|name| name.starts_with(".out.partial")));
     send(&process, "HUP");
     let (code, stderr) = ended(process);
     assert_eq!(code, Some(0), "{stderr}");
@@ -189,12 +178,12 @@ fn leftovers_of_the_dead_go() {
     fs::create_dir(here.join(".out.partial-1-1")).unwrap();
     fs::write(here.join(".out.partial-1-1/notes.txt"), "mine").unwrap();
     // An earlier result that was moved aside when the process died goes back.
-    assert!(perilife(here, &["predict", "panel.toml", "--out", "kept", "-q"]).status.success());
+    done(here, "predict panel.toml --out kept -q");
     fs::rename(here.join("kept"), here.join(".kept.old-1-0")).unwrap();
     fs::create_dir(here.join("kept.d")).unwrap();
-    assert!(perilife(here, &["predict", "panel.toml", "--out", "out", "-q"]).status.success());
+    done(here, "predict panel.toml --out out -q");
     fs::write(here.join(".kept.old-1-0/notes.txt"), "mine").unwrap();
-    let output = perilife(here, &["predict", "panel.toml", "--out", "kept", "-q"]);
+    let output = perilife(here, "predict panel.toml --out kept -q");
     assert!(output.status.success() || texts(&output).1.contains("notes.txt"), "{}", texts(&output).1);
     assert_eq!(fs::read_to_string(here.join("kept/notes.txt")).unwrap(), "mine");
     let hidden: Vec<String> = names(here).into_iter().filter(|name| name.starts_with('.')).collect();
@@ -224,15 +213,14 @@ fn mounted_and_full_places() {
     assert_refused(&refused, 2, &["--out = out", "is a mount point", "give a folder below it"]);
     assert!(begun.elapsed() < Duration::from_secs(2), "it is said before the run");
     for _ in 0..2 {
-        done(here, &["predict", "panel.toml", "--out", "out/run", "-q"]);
+        done(here, "predict panel.toml --out out/run -q");
     }
     assert_eq!(names(&mounted), ["run"]);
     assert!(mounted.join("run/a_n.csv").is_file());
     unmount();
     // Too small for the pictures: said before, and the tables stay. Too small for the tables: nothing is computed.
     assert!(mount("size=200k"));
-    let output =
-        perilife(here, &["predict", "small.toml", "--out", "out/x", "-q", "--paraview", "--set", "model.spacing_mm=0.5"]);
+    let output = perilife(here, "predict small.toml --out out/x -q --paraview --set model.spacing_mm=0.5");
     let (code, stderr) = (output.status.code(), texts(&output).1);
     assert_eq!(code, Some(4), "{stderr}");
     assert!(stderr.contains("warning: disk: out/x: ") && stderr.contains("its tables come first"), "{stderr}");

@@ -2,12 +2,11 @@
 
 use std::fs;
 use std::os::unix::fs::symlink;
-use std::path::Path;
 
-use tempfile::{TempDir, tempdir};
+use tempfile::TempDir;
 
 use crate::interface::cli::{assert_refused, perilife, texts};
-use crate::support::daily::{content, names, write_inputs};
+use crate::support::daily::{self, content, names};
 use crate::support::desk::done;
 
 /// Every option that names one file: the call before it, a file that the call reads, and whether `-` is standard output there.
@@ -19,9 +18,8 @@ const OUTPUTS: [(&[&str], &str, &str); 4] = [
 ];
 
 fn inputs() -> TempDir {
-    let dir = tempdir().unwrap();
-    write_inputs(dir.path());
-    assert!(perilife(dir.path(), &["predict", "panel.toml", "--out", "run", "-q"]).status.success());
+    let dir = daily::inputs();
+    done(dir.path(), "predict panel.toml --out run -q");
     dir
 }
 
@@ -81,16 +79,13 @@ fn a_checkpoint_is_nothing_that_is_read() {
             ("out/run.ckpt", "is inside --out = out"),
         ] {
             let before = content(here);
-            let output = perilife(here, &[command, input, "--out", "out", "-q", "--checkpoint", file]);
-            assert!(
-                [Some(2), Some(4)].contains(&output.status.code()) && texts(&output).1.contains(words),
-                "{}",
-                texts(&output).1
-            );
+            let output = perilife(here, &format!("{command} {input} --out out -q --checkpoint {file}"));
+            assert!([Some(2), Some(4)].contains(&output.status.code()), "{}", texts(&output).1);
+            assert!(texts(&output).1.contains(words), "{}", texts(&output).1);
             assert!(content(here) == before, "{command} --checkpoint {file}");
         }
         fs::remove_file(here.join("link")).unwrap();
-        done(here, &[command, input, "--out", "out", "-q", "--checkpoint", "run.ckpt"]);
+        done(here, &format!("{command} {input} --out out -q --checkpoint run.ckpt"));
         fs::remove_dir_all(here.join("out")).unwrap();
     }
     assert!(names(here).iter().all(|name| !name.starts_with('.')), "{:?}", names(here));
@@ -104,7 +99,7 @@ fn a_table_that_was_cut_off_is_noticed() {
     let table = fs::read(here.join("run/a_n.csv")).unwrap();
     let row_end = table.iter().take(3000).rposition(|byte| *byte == b'\n').unwrap() + 1;
     let changed = String::from_utf8(table.clone()).unwrap().replacen("9.000000000", "8.000000000", 1).into_bytes();
-    let export = || perilife(here, &["export", "run", "--points", "3", "--out", "e.csv", "-q"]);
+    let export = || perilife(here, "export run --points 3 --out e.csv -q");
     for (bytes, words) in
         [(&table[..3000], "is cut off: 3000 of the"), (&table[..row_end], "is cut off"), (&changed[..], "is not the table")]
     {
@@ -130,8 +125,7 @@ fn pipes_are_files() {
     let here = dir.path();
     let piped = |input: &str, arguments: &[&str]| {
         let mut command = assert_cmd::cargo::cargo_bin_cmd!("perilife");
-        let output =
-            command.current_dir(here).args(arguments).pipe_stdin(Path::new(&here.join(input))).unwrap().output().unwrap();
+        let output = command.current_dir(here).args(arguments).pipe_stdin(here.join(input)).unwrap().output().unwrap();
         (output.status.code(), texts(&output))
     };
     for stdin in ["-", "/dev/stdin"] {

@@ -4,17 +4,9 @@ use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
 
-use tempfile::{TempDir, tempdir};
-
 use crate::interface::cli::{assert_refused, perilife};
-use crate::support::daily::{KINDS, content, names, write_inputs};
+use crate::support::daily::{KINDS, content, inputs, names};
 use crate::support::desk::done;
-
-fn inputs() -> TempDir {
-    let dir = tempdir().unwrap();
-    write_inputs(dir.path());
-    dir
-}
 
 /// A file, a hidden one, a folder, one below a folder of the run, a link, a project: each is named, and stays with all else as it was.
 #[test]
@@ -67,7 +59,7 @@ fn another_kind_is_not_replaced() {
     }
     assert!(content(here) == before);
     // A calibration without predictions takes those of an earlier one along: they are its own.
-    done(here, &["calibrate", "fit.toml", "--out", "calibrate", "-q"]);
+    done(here, "calibrate fit.toml --out calibrate -q");
     assert!(!here.join("calibrate/panel").exists());
 }
 
@@ -156,7 +148,7 @@ fn an_input_in_the_folder_is_refused() {
         .unwrap();
     fs::create_dir(here.join("data")).unwrap();
     fs::write(here.join("data/rates.csv"), table).unwrap();
-    let output = perilife(here, &["predict", "t.toml", "--out", "data", "-q"]);
+    let output = perilife(here, "predict t.toml --out data -q");
     assert_refused(&output, 2, &["--out = data", "contains an input of this run, data/rates.csv"]);
 }
 
@@ -171,13 +163,13 @@ fn links_lead_to_the_place() {
     symlink("circle", here.join("circle")).unwrap();
     for (out, place) in [("empty", "empty"), ("to_empty", "empty"), ("dangling", "nowhere/below"), ("dangling", "nowhere/below")]
     {
-        done(here, &["predict", "panel.toml", "--out", out, "-q"]);
+        done(here, &format!("predict panel.toml --out {out} -q"));
         assert!(here.join(place).join("a_n.csv").is_file(), "{out}");
     }
     for link in ["to_empty", "dangling"] {
         assert!(fs::symlink_metadata(here.join(link)).unwrap().is_symlink());
     }
-    assert_refused(&perilife(here, &["predict", "panel.toml", "--out", "circle", "-q"]), 4, &["circle"]);
-    assert_refused(&perilife(here, &["predict", "panel.toml", "--out", "-", "-q"]), 2, &["--out = -", "name of a folder"]);
+    assert_refused(&perilife(here, "predict panel.toml --out circle -q"), 4, &["circle"]);
+    assert_refused(&perilife(here, "predict panel.toml --out - -q"), 2, &["--out = -", "name of a folder"]);
     assert!(names(here).iter().all(|name| !name.starts_with('.')), "{:?}", names(here));
 }

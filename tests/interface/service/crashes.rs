@@ -8,16 +8,16 @@ use std::time::Duration;
 use tempfile::tempdir;
 
 use super::jobs::{with_each_store, with_store};
-use super::{QUICK, SLOW, of};
+use super::{QUICK, SLOW, of, test_of_quick};
 use crate::interface::cli::perilife;
 use crate::support::noise::Noise;
 use crate::support::postgres::Postgres;
-use crate::support::server::{Server, wait};
+use crate::support::server::{Server, in_folder, wait};
 
 /// The a-N curve of an undisturbed run by the command line.
 pub fn undisturbed(folder: &Path, text: &str) -> Vec<u8> {
     fs::write(folder.join("case.toml"), text).unwrap();
-    assert!(perilife(folder, &["predict", "case.toml", "--out", "run"]).status.success());
+    assert!(perilife(folder, "predict case.toml --out run").status.success());
     fs::read(folder.join("run/a_n.csv")).unwrap()
 }
 
@@ -64,40 +64,6 @@ fn a_killed_server_loses_nothing() {
     });
 }
 
-/// Twenty times something dies while a queue is worked off: the server with its workers, a worker of another process, or all
-/// connections to the database.
-#[test]
-#[ignore = "long: twenty kills, a minute"]
-fn twenty_kills_lose_nothing() {
-    let Some(postgres) = Postgres::start() else { return };
-    let dir = tempdir().unwrap();
-    let jobs = mixed(dir.path(), 18);
-    let url = postgres.database("twenty");
-    let place = ["--database", url.as_str()];
-    let mut service = Server::start(&place, &EAGER);
-    let mut worker = Server::worker(&place, &EAGER);
-    let addresses = submit(&service, &jobs);
-    let mut noise = Noise::new(20);
-    let cut = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = 'twenty' AND pid <> pg_backend_pid()";
-    for kill in 0..20 {
-        std::thread::sleep(Duration::from_millis(200 + (600.0 * noise.normal().abs()) as u64));
-        match kill % 3 {
-            0 => {
-                service.kill();
-                service = Server::start(&place, &EAGER);
-            }
-            1 => {
-                worker.kill();
-                worker = Server::worker(&place, &EAGER);
-            }
-            _ => postgres.sql(&url, cut).unwrap(),
-        }
-    }
-    let left = addresses.iter().filter(|job| service.get(job).json()["state"] != "succeeded").count();
-    println!("{left} of {} jobs were left after the last kill", jobs.len());
-    check(&service, &addresses, &jobs);
-}
-
 /// A small disk of its own, which can be filled.
 pub struct SmallDisk(tempfile::TempDir);
 
@@ -106,11 +72,7 @@ impl SmallDisk {
         self.0.path()
     }
 
-    pub fn mounted() -> Option<SmallDisk> {
-        SmallDisk::mounted_with("40m")
-    }
-
-    pub fn mounted_with(size: &str) -> Option<SmallDisk> {
+    pub fn mounted(size: &str) -> Option<SmallDisk> {
         let folder = tempdir().unwrap();
         let mount = std::process::Command::new("mount")
             .args(["-t", "tmpfs", "-o", &format!("size={size}"), "tmpfs"])
@@ -133,38 +95,31 @@ impl Drop for SmallDisk {
 /// The disk fills up while jobs run: new ones are refused with 503, what is there can be read, and all goes on once there is room.
 #[test]
 fn a_full_disk_loses_nothing() {
-    let Some(disk) = SmallDisk::mounted_with("120m") else { return };
+    let Some(disk) = SmallDisk::mounted("120m") else { return };
     let dir = tempdir().unwrap();
     let jobs = mixed(dir.path(), 3);
-    let place = crate::support::server::in_folder(disk.0.path());
-    let service = Server::start(&[&place[0], &place[1]], &EAGER);
+    let service = Server::start(&in_folder(disk.path()), &EAGER);
     let large = serde_json::json!({ "input": QUICK, "files": { "large.csv": "7".repeat(3_000_000) } });
     let superfluous = [(); 4].map(|()| service.submit("predictions", &large));
     superfluous.iter().for_each(|job| drop(service.succeeded(job)));
     let addresses = submit(&service, &jobs);
-    let ballast = disk.0.path().join("ballast");
+    let ballast = disk.path().join("ballast");
     let mut file = fs::File::create(&ballast).unwrap();
     while std::io::Write::write_all(&mut file, &[0; 4096]).is_ok() {}
     // Or it would take its room until the end.
     drop(file);
-    let refused = (0..20).map(|_| service.post("/v1/predictions", &of("case", QUICK))).find(|answer| answer.status != 202);
-    let refused = refused.unwrap().expect(503);
-    assert!(refused.header("retry-after").is_some(), "{}", refused.text());
-    assert!(refused.text().contains("disk has 0 MB free, and 64 are needed"), "{}", refused.text());
+    let refused = service.post("/v1/predictions", &of("case", QUICK)).expect(503);
+    let words = "disk has 0 MB free, and 64 are needed";
+    assert!(refused.header("retry-after").is_some() && refused.text().contains(words), "{}", refused.text());
     // All is read, and room can be made, which the next results take.
-    for _ in 0..20 {
-        service.get(&addresses[0]).expect(200);
-        service.get("/v1/jobs").expect(200);
+    for (path, status) in [(&*addresses[0], 200), ("/v1/jobs", 200), ("/readyz", 503)] {
+        service.get(path).expect(status);
     }
-    service.get("/readyz").expect(503);
     superfluous.iter().for_each(|job| drop(service.send("DELETE", job, &[], b"").expect(204)));
     // Long enough for claims to run out.
     std::thread::sleep(Duration::from_millis(3500));
     fs::remove_file(&ballast).unwrap();
-    for (address, (_, curve)) in addresses.iter().zip(&jobs) {
-        service.succeeded(address);
-        assert!(service.file(address, "a_n.csv") == *curve, "{address}: another curve");
-    }
+    check(&service, &addresses, &jobs);
 }
 
 /// A worker of two is killed; the other goes on with its job from the checkpoint.
@@ -191,9 +146,6 @@ fn another_worker_takes_over() {
     assert!(!taken_up.is_empty() && taken_up.iter().all(|share| *share > 0.05), "{taken_up:?}");
 }
 
-const CALIBRATION: &str = "[measured]\nfiles = [\"curve.csv\"]\n[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\nlength_mm = 120\n\
-    thickness_mm = 2\ncrack_length_mm = 9\n[material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 60\nstress_ratio = 0.1\n\
-    [model]\nspacing_mm = 0.25\nsymmetry = \"off\"\n";
 const READINGS: &str =
     "cycles,crack_length_mm\n0,9\n20000,10\n37000,11\n51000,12\n63000,13\n73000,14\n82000,15.2\n89000,16.4\n95000,18\n";
 
@@ -203,11 +155,12 @@ fn a_killed_calibration_is_made_again() {
     with_store("fit_killed", |place| {
         let dir = tempdir().unwrap();
         let folder = dir.path();
-        fs::write(folder.join("fit.toml"), CALIBRATION).unwrap();
+        let text = test_of_quick("spacing_mm = 0.25\nsymmetry = \"off\"");
+        fs::write(folder.join("fit.toml"), &text).unwrap();
         fs::write(folder.join("curve.csv"), READINGS).unwrap();
-        assert!(perilife(folder, &["calibrate", "fit.toml", "--out", "fit"]).status.success());
+        assert!(perilife(folder, "calibrate fit.toml --out fit").status.success());
         let mut service = Server::start(place, &EAGER);
-        let body = serde_json::json!({ "name": "fit", "input": CALIBRATION, "files": { "curve.csv": READINGS } });
+        let body = serde_json::json!({ "name": "fit", "input": text, "files": { "curve.csv": READINGS } });
         let job = service.submit("calibrations", &body);
         wait("on its way", || service.get(&job).json()["progress"]["share"].as_f64().unwrap_or(0.0) > 0.02);
         service.kill();
@@ -265,17 +218,15 @@ fn a_database_that_is_gone_for_a_while_loses_nothing() {
     let url = postgres.database("gone");
     let service = Server::start(&["--database", &url], &EAGER);
     let addresses = submit(&service, &jobs);
-    for _ in 0..2 {
-        std::thread::sleep(Duration::from_millis(700));
-        postgres.down();
-        let answer = service.post("/v1/predictions", &of("case", QUICK)).expect(503);
-        assert!(answer.header("retry-after").is_some() && answer.text().contains("cannot be used just now"), "{}", answer.text());
-        service.get("/healthz").expect(200);
-        service.get("/readyz").expect(503);
-        service.get(&addresses[0]).expect(503);
-        postgres.up().unwrap();
-        wait("it is well again", || service.get("/readyz").status == 200);
+    std::thread::sleep(Duration::from_millis(700));
+    postgres.down();
+    let answer = service.post("/v1/predictions", &of("case", QUICK)).expect(503);
+    assert!(answer.header("retry-after").is_some() && answer.text().contains("cannot be used just now"), "{}", answer.text());
+    for (path, status) in [("/healthz", 200), ("/readyz", 503), (&*addresses[0], 503)] {
+        service.get(path).expect(status);
     }
+    postgres.up().unwrap();
+    wait("it is well again", || service.get("/readyz").status == 200);
     // Connections cut one by one while it stays up.
     let cut = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = 'gone' AND pid <> pg_backend_pid()";
     for _ in 0..5 {

@@ -11,9 +11,9 @@ use std::time::Instant;
 use assert_cmd::cargo::cargo_bin;
 use tempfile::tempdir;
 
+use super::queue::token;
 use super::{QUICK, SLOW, of};
 use crate::interface::cli::{perilife, texts};
-use crate::support::desk::done;
 use crate::support::nginx::{DELIVERED, Nginx};
 use crate::support::server::{Server, in_folder};
 
@@ -64,9 +64,7 @@ fn limits_agree() {
 /// The health check of the container says yes of a service that runs, and no of one that does not.
 #[test]
 fn the_health_check_of_the_container_asks() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let mut service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let (_dir, mut service) = Server::alone(&["--jobs", "0"]);
     let joined = CONTAINER.replace("\\\n", " ");
     let check = joined.lines().find(|line| line.starts_with("HEALTHCHECK")).unwrap();
     let words: Vec<String> = serde_json::from_str(&check[check.find('[').unwrap()..]).unwrap();
@@ -121,19 +119,12 @@ fn the_proxy_configuration_is_accepted() {
     assert!(answer.to_lowercase().contains("x-content-type-options: nosniff"), "{answer}");
 }
 
-/// A token of a service in a folder.
-fn token(folder: &Path, data: &Path, role: &str) -> String {
-    let (stdout, _) = done(folder, &["token", "--data", data.to_str().unwrap(), "add", role, "--role", role]);
-    stdout.trim().to_owned()
-}
-
 /// A job with its events and files goes through the proxy for whoever has a token; a body of the largest size gets to the service.
 fn served_through_nginx(options: &[&str]) {
     let dir = tempdir().unwrap();
-    let data = dir.path().join("service");
-    let place = in_folder(&data);
-    let secret = token(dir.path(), &data, "run");
-    let mut through = Server::start(&[&place[0], &place[1]], &[&["--jobs", "1"], options].concat());
+    let place = in_folder(dir.path());
+    let secret = token(&place, "ann", "run");
+    let mut through = Server::start(&place, &[&["--jobs", "1"], options].concat());
     let Some(nginx) = Nginx::before(&through.url) else { return };
     through.url.clone_from(&nginx.url);
     through.get("/healthz").expect(200);
@@ -178,9 +169,7 @@ fn a_service_that_trusts_its_proxy_is_served_through_nginx() {
 /// Without tokens it is for this machine alone, and who comes through a proxy need not be on it.
 #[test]
 fn a_service_without_tokens_refuses_what_comes_through_nginx() {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    let mut service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let (_dir, mut service) = Server::alone(&["--jobs", "0"]);
     let Some(nginx) = Nginx::before(&service.url) else { return };
     service.get("/v1/predictions").expect(200);
     service.url.clone_from(&nginx.url);

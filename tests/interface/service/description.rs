@@ -16,7 +16,7 @@ const PROBLEM: &str = "application/problem+json";
 /// A service without tokens in a folder, and its description.
 fn described(folder: &std::path::Path, options: &[&str]) -> (Server, Value) {
     let place = in_folder(folder);
-    let service = Server::start(&[&place[0], &place[1]], options);
+    let service = Server::start(&place, options);
     let api = service.get("/openapi.json").expect(200).json();
     (service, api)
 }

@@ -20,6 +20,7 @@ use tower::ServiceExt;
 use super::QUICK;
 use crate::support::noise::Noise;
 use crate::support::rows::rows;
+use crate::support::server::multipart;
 
 /// Memory that no flood of bodies may exceed, MB. A process of the tests has some 300 of its own.
 const MEMORY_MB: f64 = 1500.0;
@@ -88,10 +89,6 @@ impl Mutator {
     }
 }
 
-fn form(name: &str, content: &str) -> String {
-    format!("--XX\r\nContent-Disposition: form-data; name=\"file\"; filename=\"{name}\"\r\n\r\n{content}\r\n--XX--\r\n")
-}
-
 /// Something to send: its inner text, which is changed for itself half of the time, and what is around it.
 struct Seed {
     path: &'static str,
@@ -105,13 +102,13 @@ type Around = fn(&str) -> String;
 fn seeds() -> Vec<Seed> {
     let quick = QUICK.replace("spacing_mm = 1.5", "spacing_mm = 6");
     let object = quick.parse::<toml::Table>().map(|table| json!({ "name": "x", "input": table }).to_string()).unwrap();
-    let (json, toml, multipart) = ("application/json", "application/toml", "multipart/form-data; boundary=XX");
+    let (json, toml, form) = ("application/json", "application/toml", "multipart/form-data; boundary=XX");
     let plain: Around = str::to_owned;
     let text: Around = |inner| json!({ "input": inner }).to_string();
     let seeds: [(&str, &str, &str, Around); 11] = [
-        ("/v1/measured", multipart, CSV, |inner| form("curve.csv", inner)),
-        ("/v1/measured", multipart, WIDE, |inner| form("curve.csv", inner)),
-        ("/v1/measured", multipart, "PAR1 nothing PAR1", |inner| form("curve.parquet", inner)),
+        ("/v1/measured", form, CSV, |inner| multipart(&[("file", Some("curve.csv"), inner)])),
+        ("/v1/measured", form, WIDE, |inner| multipart(&[("file", Some("curve.csv"), inner)])),
+        ("/v1/measured", form, "PAR1 nothing PAR1", |inner| multipart(&[("file", Some("curve.parquet"), inner)])),
         ("/v1/check", json, &quick, text),
         ("/v1/check", json, &object, plain),
         ("/v1/check", toml, SCENE, plain),
@@ -178,7 +175,6 @@ fn flooded(count: u64) {
         }
         all
     });
-    println!("{count} bodies: {statuses:?}; peak memory {:.0} MB", peak_mb());
     assert!(peak_mb() < MEMORY_MB, "{} MB", peak_mb());
     // The changes are such that much is still understood, and much is not.
     assert!(statuses[&200] > count / 50 && statuses[&422] > count / 50 && statuses[&400] > count / 50, "{statuses:?}");

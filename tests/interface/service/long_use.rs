@@ -52,11 +52,10 @@ fn accepted(service: &Server, body: &Value, key: &str) -> String {
 #[ignore = "long: an hour; cargo test soak -- --ignored --nocapture"]
 fn soak() {
     let minutes = std::env::var("PERILIFE_SOAK_MINUTES").ok().and_then(|text| text.parse().ok()).unwrap_or(60.0);
-    let Some(disk) = SmallDisk::mounted_with("400m") else { return };
+    let Some(disk) = SmallDisk::mounted("400m") else { return };
     let dir = tempdir().unwrap();
     let loads = loads(dir.path());
     let place = in_folder(disk.path());
-    let place = [place[0].as_str(), place[1].as_str()];
     // What answers is never killed, so that its memory can be looked at.
     let service = Server::start(&place, &["--jobs", "0"]);
     let work = ["--jobs", "2", "--checkpoint-every", "0", "--lease", "2", "--attempts", "1000", "--keep-days", "1"];

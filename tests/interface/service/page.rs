@@ -11,6 +11,7 @@ use tempfile::tempdir;
 use super::{SLOW, of};
 use crate::interface::cli::perilife;
 use crate::support::browser::Browser;
+use crate::support::rows::assert_says;
 use crate::support::server::{Server, in_folder};
 use crate::support::workbook::workbook;
 
@@ -85,7 +86,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
     let Some(browser) = Browser::start() else { return };
     let dir = tempdir().unwrap();
     let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    let service = Server::start(&place, &["--jobs", "1"]);
     let pictures = Path::new(env!("CARGO_TARGET_TMPDIR")).join("page");
     fs::create_dir_all(&pictures).unwrap();
     let walk = Walk { browser, pictures };
@@ -103,10 +104,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.see("[data-problems]");
     page.until("document.querySelector('#measured').dataset.measured === 'problem'");
     let found = page.text("[data-problems]");
-    assert!(
-        ["many", "is not a number", "is below the previous reading", "is negative"].iter().all(|words| found.contains(words)),
-        "{found}"
-    );
+    assert_says(&found, &["many", "is not a number", "is below the previous reading", "is negative"]);
     walk.look("02_problems");
     // A row is left out by its line and value with a reason; the file stays as it was dropped.
     let count = page.count("[data-action=take-out]");
@@ -350,7 +348,7 @@ fn the_page_asks_for_a_token() {
     let place = in_folder(dir.path());
     let made = perilife(dir.path(), &["token", &place[0], &place[1], "add", "ann", "--role", "run"]);
     let token = String::from_utf8(made.stdout).unwrap();
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0", "--require-token"]);
+    let service = Server::start(&place, &["--jobs", "0", "--require-token"]);
     page.look(1280, 900, "dark");
     page.open(&format!("{}/#/runs", service.url));
     page.see("#token-dialog[open] #token");

@@ -6,11 +6,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use serde_json::json;
-use tempfile::tempdir;
 
 use super::of;
 use crate::support::browser::Browser;
-use crate::support::server::{Server, in_folder};
+use crate::support::server::Server;
 
 /// From npm's registry, once for all runs; not among the files of this project.
 const AXE: &str = "axe-core@4.14.1";
@@ -109,9 +108,7 @@ fn pages(service: &Server, folder: &Path) -> Vec<Page> {
 #[test]
 fn axe_finds_no_violation_on_any_page() {
     let (Some(browser), Some(axe)) = (Browser::start(), axe()) else { return };
-    let folder = tempdir().unwrap();
-    let place = in_folder(folder.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "2"]);
+    let (folder, service) = Server::alone(&["--jobs", "2"]);
     let mut flaws = Vec::new();
     for (address, seen, click) in pages(&service, folder.path()) {
         browser.open("about:blank");

@@ -4,12 +4,12 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use tempfile::{TempDir, tempdir};
+use tempfile::TempDir;
 
 use super::page::Walk;
 use crate::support::browser::Browser;
 use crate::support::rows::assert_says;
-use crate::support::server::{Server, in_folder};
+use crate::support::server::Server;
 
 /// Kinds that are loaded by forces.
 const BEAR_FORCE: [&str; 4] = ["lug", "single_edge_bend", "eccentric_single_edge_tension", "wedge_opening"];
@@ -24,9 +24,7 @@ struct Forms {
 impl Forms {
     fn open() -> Option<Self> {
         let browser = Browser::start()?;
-        let folder = tempdir().unwrap();
-        let place = in_folder(folder.path());
-        let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+        let (folder, service) = Server::alone(&["--jobs", "1"]);
         let pictures = Path::new(env!("CARGO_TARGET_TMPDIR")).join("page");
         fs::create_dir_all(&pictures).unwrap();
         browser.look(1280, 900, "light");
@@ -246,7 +244,8 @@ fn named_plates_have_forms() {
     let (page, walk) = (&forms.walk.browser, &forms.walk);
     fill_forms_of(&forms, &["stop_hole", "cruciform"]);
     forms.choose("specimen.kind", "lug");
-    forms.fill_all("specimen.hole_diameter_mm=20 loading.force_max_kn=9");
+    // Far enough for a curve: the way to the end takes half a minute.
+    forms.fill_all("specimen.hole_diameter_mm=20 loading.force_max_kn=9 stop.crack_length_mm=4");
     forms.choose("specimen.head", "round");
     page.see("#predict:not([disabled])");
     walk.look("27_named_plate");

@@ -5,14 +5,16 @@ use tempfile::tempdir;
 
 use super::crashes::undisturbed;
 use super::jobs::{with_each_store, with_store};
-use super::{QUICK, SLOW, of, tiny};
+use super::named::names;
+use super::{QUICK, SLOW, of, test_of_quick, tiny};
 use crate::interface::cli::{assert_refused, perilife};
 use crate::support::desk::done;
-use crate::support::server::{Answer, Server};
+use crate::support::server::{Answer, Server, wait};
 
 /// A token of this name and role in the store at `place`.
-pub fn token(place: &[&str], name: &str, role: &str) -> String {
-    let (stdout, _) = done(std::path::Path::new("."), &[&["token", "add", name, "--role", role], place].concat());
+pub fn token(place: &[impl AsRef<str>], name: &str, role: &str) -> String {
+    let place: Vec<&str> = place.iter().map(AsRef::as_ref).collect();
+    let (stdout, _) = done(std::path::Path::new("."), &[&["token", "add", name, "--role", role][..], &place].concat());
     stdout.trim().to_owned()
 }
 
@@ -45,15 +47,12 @@ fn owners_take_turns() {
         // Who asks for the next as soon as he has the last comes no oftener than the others, and who had nothing to do for a while
         // has no claim to catch up: his first job comes behind those of the turn at hand, his second behind the next turn's.
         drop(worker);
-        let place_in_queue = |service: &Server, job: &str| service.get(job).json()["position"].as_i64().unwrap();
-        let [ann, bob, cy] = [0, 1, 2].map(|owner: usize| tokens[owner].1.clone());
-        service = service.with_token(&ann);
-        let batch: Vec<String> = (0..2).map(|_| service.submit("predictions", &of("ann", QUICK))).collect();
-        service = service.with_token(&bob);
-        let again: Vec<String> = (0..2).map(|_| service.submit("predictions", &of("bob", QUICK))).collect();
-        service = service.with_token(&cy);
-        let late: Vec<String> = (0..2).map(|_| service.submit("predictions", &of("cy", QUICK))).collect();
-        let places: Vec<i64> = [&batch, &again, &late].into_iter().flatten().map(|job| place_in_queue(&service, job)).collect();
+        let mut next: Vec<String> = Vec::new();
+        for (name, secret) in &tokens {
+            service = service.with_token(secret);
+            next.extend((0..2).map(|_| service.submit("predictions", &of(name, QUICK))));
+        }
+        let places: Vec<i64> = next.iter().map(|job| service.get(job).json()["position"].as_i64().unwrap()).collect();
         // Ann has had five turns: the others begin with her fifth, she with her sixth.
         assert_eq!(places, [2, 5, 0, 3, 1, 4]);
     });
@@ -102,7 +101,6 @@ fn a_submission_costs_the_same_whatever_is_stored() {
         );
         sums_are_right(place);
         let after = median_s();
-        println!("a submission takes {:.1} ms, {:.1} ms before", 1e3 * after, 1e3 * before);
         // A sum over all files took 100 ms more.
         assert!(after < 3.0 * before + 0.02, "{before} s, {after} s");
         sums_are_right(place);
@@ -117,9 +115,7 @@ fn a_run_gives_way_to_another_owner() {
         let options = ["--jobs", "2", "--require-token", "--checkpoint-every", "0"];
         let service = Server::start(place, &options).with_token(&ann);
         let long: Vec<String> = (0..3).map(|_| service.submit("predictions", &of("long", SLOW))).collect();
-        while service.get("/v1/predictions?state=running").json()["items"].as_array().unwrap().len() < 2 {
-            std::thread::sleep(std::time::Duration::from_millis(20));
-        }
+        wait("two run", || names(&service, "/v1/predictions?state=running").len() == 2);
         let service = service.with_token(&bob);
         let short = service.submit("predictions", &of("short", &tiny()));
         service.succeeded(&short);
@@ -145,13 +141,9 @@ fn the_queue_has_an_end_for_everybody_together() {
         });
         let count = |status: u16| answers.iter().filter(|answer| answer.status == status).count();
         assert_eq!((count(202), count(429)), (6, 34));
-        assert_eq!(service.get("/v1/predictions?state=queued").json()["items"].as_array().unwrap().len(), 6);
+        assert_eq!(names(&service, "/v1/predictions?state=queued").len(), 6);
     });
 }
-
-const BY_HAND: &str = "[measured]\nfiles = [\"curve.csv\"]\n[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\n\
-    length_mm = 120\nthickness_mm = 2\ncrack_length_mm = 9\n[material]\nname = \"al2024-t3\"\n[loading]\n\
-    stress_range_mpa = 60\nstress_ratio = 0.1\n[model]\nmethod = \"handbook\"\n";
 
 /// A request that was accepted is answered with its job however often it comes, even if what it refers to has gone since.
 #[test]
@@ -159,7 +151,8 @@ fn a_repeated_request_finds_its_job() {
     with_store("repeated", |place| {
         let service = Server::start(place, &["--jobs", "1"]);
         let curve = "cycles,crack_length_mm\n0,9\n20000,10\n37000,11\n51000,12\n63000,13\n";
-        let fit = service.submit("calibrations", &json!({ "input": BY_HAND, "files": { "curve.csv": curve } }));
+        let fit = service
+            .submit("calibrations", &json!({ "input": test_of_quick("method = \"handbook\""), "files": { "curve.csv": curve } }));
         let law = service.succeeded(&fit)["id"].clone();
         let case = QUICK.replace("[model]\nspacing_mm = 1.5\n", "[model]\nmethod = \"handbook\"\n");
         let body = json!({ "name": "case", "input": case, "calibration": law }).to_string();
@@ -186,13 +179,8 @@ fn large_files_go_in_parts() {
         let files = json!({ "large.csv": large, "empty.csv": "" });
         let job = service.submit("predictions", &json!({ "input": QUICK, "files": files }));
         let inputs = service.get(&job).json()["inputs"].clone();
-        let sizes: Vec<(&str, i64)> = inputs
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|file| (file["name"].as_str().unwrap(), file["bytes"].as_i64().unwrap()))
-            .collect();
-        assert_eq!(sizes, [("empty.csv", 0), ("large.csv", 20_000_000)]);
+        let sizes: Vec<_> = inputs.as_array().unwrap().iter().map(|file| (&file["name"], &file["bytes"])).collect();
+        assert_eq!(sizes, [(&json!("empty.csv"), &json!(0)), (&json!("large.csv"), &json!(20_000_000))]);
         let came = |index: usize| service.get(inputs[index]["href"].as_str().unwrap()).expect(200);
         assert!(came(0).body.is_empty());
         let large_again = came(1);
@@ -215,7 +203,6 @@ fn large_files_go_in_parts() {
         let _ = std::io::Read::read_to_end(&mut reader, &mut got);
         let head = String::from_utf8_lossy(&got[..400]).into_owned();
         assert!(head.contains("content-length: 20000000") && got.len() < 20_000_000, "{} bytes of {head}", got.len());
-        println!("{before:.0} MB before, {after:.0} MB with 100 readers of 20 MB who do not read");
     });
 }
 
@@ -327,9 +314,10 @@ fn a_worker_older_than_the_tables_takes_no_jobs() {
 }
 
 /// Runs a statement on the database of a store.
-pub fn on_store(place: &[&str], statement: &str) {
+pub fn on_store(place: &[impl AsRef<str>], statement: &str) {
     use sqlx::Connection;
-    let url = if place[0] == "--database" { place[1].to_owned() } else { format!("sqlite://{}/perilife.sqlite", place[1]) };
+    let (kind, place) = (place[0].as_ref(), place[1].as_ref());
+    let url = if kind == "--database" { place.to_owned() } else { format!("sqlite://{place}/perilife.sqlite") };
     sqlx::any::install_default_drivers();
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     runtime.block_on(async {

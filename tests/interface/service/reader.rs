@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use super::QUICK;
 use crate::support::browser::Browser;
 use crate::support::server::Server;
 
@@ -72,9 +73,7 @@ fn a_fit_of_laws_has_a_page() {
     assert_eq!(summary["law"], "walker", "{summary}");
     assert!((summary["constants"]["walker_gamma"].as_f64().unwrap() - 0.5).abs() < 1e-6, "{summary}");
     // A prediction takes the law of the job.
-    let case = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\nlength_mm = 120\nthickness_mm = 2\ncrack_length_mm = 9\n[material]\n\
-                name = \"al2024-t3\"\n[loading]\nstress_range_mpa = 60\nstress_ratio = 0.3\n[model]\nmethod = \"handbook\"\n[stop]\n\
-                crack_length_mm = 20\n";
+    let case = QUICK.replace("stress_ratio = 0.1", "stress_ratio = 0.3").replace("spacing_mm = 1.5", "method = \"handbook\"");
     let id = job.rsplit('/').next().unwrap();
     let life = service.submit("predictions", &json!({ "name": "life", "input": case, "calibration": id }));
     let life = service.succeeded(&life);

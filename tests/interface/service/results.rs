@@ -7,13 +7,14 @@ use perilife_base::monotone::Monotone;
 use serde_json::{Value, json};
 use tempfile::tempdir;
 
-use super::{FOR_PARAVIEW, QUICK, SLOW, of};
+use super::{FOR_PARAVIEW, QUICK, SLOW, of, test_of_quick};
 use crate::support::desk::done;
+use crate::support::rows::assert_says;
 use crate::support::server::{Server, in_folder};
 
 fn server(folder: &Path) -> Server {
     let place = in_folder(&folder.join("service"));
-    Server::start(&[&place[0], &place[1]], &["--jobs", "2"])
+    Server::start(&place, &["--jobs", "2"])
 }
 
 /// Without what differs from run to run.
@@ -55,7 +56,7 @@ fn a_prediction_has_the_files_of_the_command() {
         let listed: Vec<&str> = ended["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();
         // The mark of the command is no file of the service, which adds the report.
         assert_eq!(listed.len(), fs::read_dir(folder.join(name)).unwrap().count(), "{listed:?}");
-        done(folder, &["report", name, "--out", "report.html"]);
+        done(folder, &format!("report {name} --out report.html"));
         let plain =
             |text: Vec<u8>| String::from_utf8(text).unwrap().lines().filter(|line| !is_of_this_run(line)).collect::<String>();
         let [ours, theirs] = [service.file(&job, "report.html"), fs::read(folder.join("report.html")).unwrap()].map(plain);
@@ -125,8 +126,7 @@ fn remaining_life(service: &Server, job: &str, ended: &Value) {
     let less = service.get(&format!("{job}/remaining?crack_length_mm={middle}&factor=0.5")).expect(422);
     assert!(less.text().contains("is not 1 or more"));
     // The report has the data of the job, and an interval if asked for.
-    let data = json!({ "report": { "laboratory": "Lab <North>", "number": "R-7" } }).to_string();
-    service.send("PATCH", job, &[("content-type", "application/json")], data.as_bytes()).expect(200);
+    service.change(job, &json!({ "report": { "laboratory": "Lab <North>", "number": "R-7" } })).expect(200);
     let report = |query: &str| service.get(&format!("{job}/report{query}")).expect(200).text();
     assert!(report("").contains("Lab &lt;North&gt;") && !report("").contains("Inspection interval"), "{}", report(""));
     assert!(report(&format!("?crack_length_mm={middle}")).contains("Inspection interval"));
@@ -163,14 +163,11 @@ fn further_analyses_are_options() {
     }
 }
 
-const TEST: &str = "[measured]\nfiles = [\"curve.csv\"]\n[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\nlength_mm = 120\n\
-    thickness_mm = 2\ncrack_length_mm = 9\n[material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 60\nstress_ratio = 0.1\n";
-
 /// Readings as the quick plate would give them.
 fn readings(folder: &Path) -> String {
     fs::write(folder.join("measured.toml"), QUICK).unwrap();
-    done(folder, &["predict", "measured.toml", "--out", "measured"]);
-    done(folder, &["export", "measured", "--out", "measured.csv", "--points", "30"]);
+    done(folder, "predict measured.toml --out measured");
+    done(folder, "export measured --out measured.csv --points 30");
     let table = fs::read_to_string(folder.join("measured.csv")).unwrap();
     let rows = table.lines().skip(1).map(|line| line.split(',').take(2).collect::<Vec<_>>().join(",") + "\n");
     "cycles,crack_length_mm\n".to_owned() + &rows.collect::<String>()
@@ -183,9 +180,8 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
     let service = server(folder);
     let curve = readings(folder);
     fs::write(folder.join("curve.csv"), &curve).unwrap();
-    let model = |method: &str| format!("{TEST}[model]\n{method}\n");
     for (name, method) in [("bonds", "spacing_mm = 1.5"), ("hand", "method = \"handbook\"")] {
-        let text = model(method);
+        let text = test_of_quick(method);
         fs::write(folder.join(format!("{name}.toml")), &text).unwrap();
         done(folder, &["calibrate", &format!("{name}.toml"), "--out", name]);
         // As JSON with the files in it, and as a form that names no files.
@@ -195,14 +191,9 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
         for file in ["fitted.toml", "fit_curves.csv", "fit_band.csv", "fit.svg", "da_dn.svg"].iter().chain(tables) {
             assert!(service.file(&job, file) == fs::read(folder.join(name).join(file)).unwrap(), "{name}: {file} differs");
         }
-        let form = multipart(&[
-            ("name", None, name),
-            // `curl -F input=@case.toml` names the file that the text is from.
-            ("input", (name == "hand").then_some("case.toml"), &text.replace("files = [\"curve.csv\"]", "")),
-            ("file", Some("curve.csv"), &curve),
-        ]);
-        let again =
-            service.send("POST", "/v1/calibrations", &[("content-type", "multipart/form-data; boundary=XX")], form.as_bytes());
+        // `curl -F input=@case.toml` names the file that the text is from.
+        let input = ("input", (name == "hand").then_some("case.toml"), &*text.replace("files = [\"curve.csv\"]", ""));
+        let again = service.send_form("/v1/calibrations", &[("name", None, name), input, ("file", Some("curve.csv"), &curve)]);
         let again = format!("/v1/calibrations/{}", again.expect(202).json()["id"].as_str().unwrap());
         service.succeeded(&again);
         assert_eq!(service.file(&again, "fitted.toml"), service.file(&job, "fitted.toml"), "{name}: as a form");
@@ -224,12 +215,12 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
             case.replace("a = 6450.0\np = 2.86\nhorizon_mm = 3.015\n", &format!("fitted = \"{name}/fitted.toml\"\n")),
         )
         .unwrap();
-        done(folder, &["predict", "case.toml", "--out", "case"]);
+        done(folder, "predict case.toml --out case");
         assert_eq!(service.succeeded(&prediction)["calibration"], ended["id"]);
         assert!(service.file(&prediction, "a_n.csv") == fs::read(folder.join("case/a_n.csv")).unwrap(), "{name}: with the fit");
 
         // What is left has the band of the table, and the interval comes from its low end, as on the command line.
-        let (words, _) = done(folder, &["predict", "case.toml", "--out", "case", "--inspect-from", "14", "--json"]);
+        let (words, _) = done(folder, "predict case.toml --out case --inspect-from 14 --json");
         let asked = serde_json::from_str::<Value>(&words).unwrap()["inspection"].clone();
         let left = service.get(&format!("{prediction}/remaining?crack_length_mm=14")).expect(200).json();
         assert_eq!(left["has_band"], true, "{left}");
@@ -246,8 +237,8 @@ fn the_band_of_a_fit_is_about_its_curve() {
     let dir = tempdir().unwrap();
     let folder = dir.path();
     fs::write(folder.join("curve.csv"), readings(folder)).unwrap();
-    fs::write(folder.join("hand.toml"), format!("{TEST}[model]\nmethod = \"handbook\"\n")).unwrap();
-    done(folder, &["calibrate", "hand.toml", "--out", "fit"]);
+    fs::write(folder.join("hand.toml"), test_of_quick("method = \"handbook\"")).unwrap();
+    done(folder, "calibrate hand.toml --out fit");
     let table = fs::read_to_string(folder.join("fit/fit_band.csv")).unwrap();
     let mut lines = table.lines();
     assert_eq!(lines.next(), Some("crack_length_mm,cycles_fitted,cycles_low,cycles_high"));
@@ -258,20 +249,10 @@ fn the_band_of_a_fit_is_about_its_curve() {
         let [_, fitted, low, high] = row[..] else { panic!("{row:?}") };
         assert!(low < fitted && fitted < high);
         // Never narrower than the rate alone leaves it, and the same factor both ways.
-        assert!(
-            (high / fitted).ln() >= 1.96 * rate_error * (1.0 - 1e-9) && ((high / fitted) / (fitted / low) - 1.0).abs() < 1e-9
-        );
+        assert!((high / fitted).ln() >= 1.96 * rate_error * (1.0 - 1e-9));
+        assert!(((high / fitted) / (fitted / low) - 1.0).abs() < 1e-9);
     }
     assert_eq!(rows.len(), 30);
-}
-
-/// A form of parts: name, file name, content.
-fn multipart(parts: &[(&str, Option<&str>, &str)]) -> String {
-    let part = |(name, file, content): &(&str, Option<&str>, &str)| {
-        let file = file.map_or_else(String::new, |file| format!("; filename=\"{file}\""));
-        format!("--XX\r\nContent-Disposition: form-data; name=\"{name}\"{file}\r\n\r\n{content}\r\n")
-    };
-    parts.iter().map(part).collect::<String>() + "--XX--\r\n"
 }
 
 /// What a check says is what the command says; measured files are read to their end whatever is wrong in them.
@@ -281,7 +262,7 @@ fn inputs_are_looked_at_as_by_the_command() {
     let folder = dir.path();
     let service = server(folder);
     fs::write(folder.join("case.toml"), QUICK).unwrap();
-    let theirs: Value = serde_json::from_str(&done(folder, &["check", "case.toml", "--json"]).0).unwrap();
+    let theirs: Value = serde_json::from_str(&done(folder, "check case.toml --json").0).unwrap();
     let mut ours = service.post("/v1/check", &json!({ "name": "case", "input": QUICK })).expect(200).json();
     // Beside its form the plate is drawn as that of a result is, without a path.
     let drawn = ours.as_object_mut().unwrap().remove("drawing").unwrap();
@@ -294,9 +275,9 @@ fn inputs_are_looked_at_as_by_the_command() {
     assert_eq!(object["understood"], theirs["understood"]);
 
     let csv = "N; a_mm\n0; 9,0\n1000; 9,5\nx; 10\n3000; 11\n2500; 12\n4000; 12,5\n5000; 13\n";
-    let form = multipart(&[("file", Some("a.csv"), &csv.replace('N', "cycles")), ("file", Some("b.csv"), "what,is\n1,2\n")]);
-    let found = service.send("POST", "/v1/measured", &[("content-type", "multipart/form-data; boundary=XX")], form.as_bytes());
-    let found = found.expect(200).json();
+    let csv = csv.replace('N', "cycles");
+    let looked_at = |parts: &[(&str, Option<&str>, &str)]| service.send_form("/v1/measured", parts);
+    let found = looked_at(&[("file", Some("a.csv"), &csv), ("file", Some("b.csv"), "what,is\n1,2\n")]).expect(200).json();
     let [a, b] = [&found["files"][0], &found["files"][1]];
     assert_eq!(
         a["columns"],
@@ -319,27 +300,19 @@ fn inputs_are_looked_at_as_by_the_command() {
         ("load_unit", "kN"),
         ("decimal", ","),
     ];
-    let form = |said: &[(&str, &str)]| {
+    let send = |said: &[(&str, &str)]| {
         let fields = said.iter().map(|(name, value)| (*name, None, *value));
-        multipart(&fields.chain([("file", Some("odd.csv"), odd)]).collect::<Vec<_>>())
+        looked_at(&fields.chain([("file", Some("odd.csv"), odd)]).collect::<Vec<_>>())
     };
-    let send = |form: String| {
-        service.send("POST", "/v1/measured", &[("content-type", "multipart/form-data; boundary=XX")], form.as_bytes())
-    };
-    let found = send(form(&said)).expect(200).json();
+    let found = send(&said).expect(200).json();
     let file = &found["files"][0];
     assert_eq!(file["columns"]["keys"], json!(["cycles", "length", "force_max"]), "{file}");
     assert_eq!(file["curves"][0]["cycles"], json!([1000.0, 2000.0, 3000.0, 4000.0, 5000.0]));
     // Rows that are left out by line and value are wrong no more; the others are read around them.
     let rows = r#"[{ "file": "a.csv", "line": 4, "value": "x", "reason": "typing error" }, { "file": "a.csv", "line": 6, "value": "2500", "reason": "counter" }]"#;
-    let left = multipart(&[("leave_out", None, rows), ("file", Some("a.csv"), &csv.replace('N', "cycles"))]);
-    let left = send(left).expect(200).json();
-    assert_eq!(
-        (&left["files"][0]["problems"], &left["files"][0]["curves"][0]["lines"]),
-        (&json!([]), &json!([2, 3, 5, 7, 8])),
-        "{left}"
-    );
-    let open = send(form(&said[..3])).expect(200).json();
+    let left = looked_at(&[("leave_out", None, rows), ("file", Some("a.csv"), &csv)]).expect(200).json()["files"][0].clone();
+    assert_eq!((&left["problems"], &left["curves"][0]["lines"]), (&json!([]), &json!([2, 3, 5, 7, 8])), "{left}");
+    let open = send(&said[..3]).expect(200).json();
     assert!(open["files"][0]["problems"][0]["problem"].as_str().unwrap().contains("is ambiguous: "), "{open}");
     for (field, value, words) in [
         ("columns", "[1]", "is not a table of columns, such as { cycles = \\\"N\\\""),
@@ -347,7 +320,16 @@ fn inputs_are_looked_at_as_by_the_command() {
         ("leave_out", "{}", "give a JSON list of { file, line, value, reason }"),
         ("colums", "x", "known are file, length_unit"),
     ] {
-        let answer = send(form(&[(field, value)]));
+        let answer = send(&[(field, value)]);
         assert!(answer.text().contains(words), "{field}: {}", answer.text());
     }
+}
+
+/// A sweep is checked as one; it was taken for a case without sections.
+#[test]
+fn sweeps_are_checked_as_such() {
+    let (_dir, service) = Server::alone(&["--jobs", "0"]);
+    let grid = "case = \"base.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nfrom = 40\nto = 60\ncount = 5\n";
+    let sweep = json!({ "name": "few", "input": grid, "files": { "base.toml": QUICK } });
+    assert_says(&service.post("/v1/check", &sweep).expect(200).text(), &["\"computing\"", "5 cases of base, grid"]);
 }

@@ -8,7 +8,6 @@ use tempfile::tempdir;
 use super::queue::token;
 use super::{QUICK, of};
 use crate::interface::cli::{assert_refused, perilife, texts};
-use crate::support::desk::done;
 use crate::support::server::{Server, in_folder};
 
 #[test]
@@ -17,22 +16,16 @@ fn roles_are_kept() {
     let folder = dir.path();
     let data = folder.join("service");
     let place = in_folder(&data);
-    let token = |name: &str, role: &str| {
-        let (stdout, _) = done(folder, &["token", "--data", data.to_str().unwrap(), "add", name, "--role", role]);
-        stdout.trim().to_owned()
-    };
+    let of_tokens = |call: &[&str]| perilife(folder, &[&["token", &place[0], &place[1]], call].concat());
     let [reader, runner, other, admin] =
-        [("ann", "read"), ("bob", "run"), ("cy", "run"), ("dee", "admin")].map(|(name, role)| token(name, role));
+        [("ann", "read"), ("bob", "run"), ("cy", "run"), ("dee", "admin")].map(|(name, role)| token(&place, name, role));
     assert!(reader.starts_with("perilife_") && reader.len() == 73 && reader != runner);
-    let twice = perilife(folder, &["token", "--data", data.to_str().unwrap(), "add", "ann", "--role", "run"]);
-    assert_refused(&twice, 2, &["ann", "has a token already"]);
+    assert_refused(&of_tokens(&["add", "ann", "--role", "run"]), 2, &["ann", "has a token already"]);
 
-    let mut service = Server::start(&[&place[0], &place[1]], &["--jobs", "0", "--require-token"]);
+    let mut service = Server::start(&place, &["--jobs", "0", "--require-token"]);
     let unknown = service.get("/v1/predictions").expect(401);
-    assert_eq!(
-        (unknown.header("www-authenticate"), unknown.header("content-type")),
-        (Some("Bearer"), Some("application/problem+json"))
-    );
+    let found = (unknown.header("www-authenticate"), unknown.header("content-type"));
+    assert_eq!(found, (Some("Bearer"), Some("application/problem+json")));
     service.get("/metrics").expect(401);
     for open in ["/", "/healthz", "/openapi.json", "/v1/service"] {
         service.get(open).expect(200);
@@ -53,15 +46,10 @@ fn roles_are_kept() {
     for (method, path) in [("POST", format!("{}/cancel", jobs[1])), ("DELETE", jobs[0].clone())] {
         service.send(method, &path, &[], b"").expect(403);
     }
-    let name = json!({ "name": "mine" }).to_string();
-    let rename = |service: &Server, status: u16| {
-        service.send("PATCH", &jobs[1], &[("content-type", "application/json")], name.as_bytes()).expect(status);
-    };
-    rename(&service, 403);
-    service = service.with_token(&runner);
-    rename(&service, 200);
-    service = service.with_token(&admin);
-    rename(&service, 200);
+    for (secret, status) in [(&other, 403), (&runner, 200), (&admin, 200)] {
+        service = service.with_token(secret);
+        service.change(&jobs[1], &json!({ "name": "mine" })).expect(status);
+    }
     service.send("DELETE", &jobs[0], &[], b"").expect(204);
     service.post(&format!("{}/cancel", jobs[1]), &json!({})).expect(202);
     // Two with the same key are two jobs if they are of two people.
@@ -80,11 +68,11 @@ fn roles_are_kept() {
     for secret in [&reader, &runner] {
         assert!(!kept.windows(secret.len()).any(|bytes| bytes == secret.as_bytes()));
     }
-    let listed = texts(&perilife(folder, &["token", "--data", data.to_str().unwrap(), "list"])).0;
+    let listed = texts(&of_tokens(&["list"])).0;
     assert!(listed.contains("ann") && listed.lines().count() == 4 && !listed.contains("perilife_"));
-    assert!(perilife(folder, &["token", "--data", data.to_str().unwrap(), "remove", "ann"]).status.success());
-    assert_refused(&perilife(folder, &["token", "--data", data.to_str().unwrap(), "remove", "ann"]), 2, &["has no token"]);
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0", "--require-token"]).with_token(&reader);
+    assert!(of_tokens(&["remove", "ann"]).status.success());
+    assert_refused(&of_tokens(&["remove", "ann"]), 2, &["has no token"]);
+    let service = Server::start(&place, &["--jobs", "0", "--require-token"]).with_token(&reader);
     service.get("/v1/predictions").expect(401);
 }
 
@@ -99,18 +87,11 @@ fn nobody_is_let_in_from_elsewhere_without_tokens() {
     assert_refused(&output, 4, &["postgres://me@127.0.0.1:1/none: cannot use the database"]);
     let stderr = texts(&output).1;
     assert!(!stderr.contains("secret") && !stderr.contains("hidden"), "{stderr}");
-    assert_refused(
-        &perilife(dir.path(), &["worker", "--database", "mysql://x/y"]),
-        4,
-        &["must begin with sqlite:// or postgres://"],
-    );
+    let output = perilife(dir.path(), "worker --database mysql://x/y");
+    assert_refused(&output, 4, &["must begin with sqlite:// or postgres://"]);
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let address = taken.local_addr().unwrap().to_string();
-    assert_refused(
-        &perilife(dir.path(), &["serve", "--data", data.to_str().unwrap(), "--listen", &address]),
-        4,
-        &["cannot listen"],
-    );
+    assert_refused(&perilife(dir.path(), &[&call[..4], &[&address]].concat()), 4, &["cannot listen"]);
 }
 
 /// Without tokens nobody is let in who came through a proxy, unless the operator says that the proxy is to be believed.
@@ -118,7 +99,6 @@ fn nobody_is_let_in_from_elsewhere_without_tokens() {
 fn a_proxy_makes_nobody_an_admin() {
     let dir = tempdir().unwrap();
     let place = in_folder(dir.path());
-    let place = [place[0].as_str(), place[1].as_str()];
     let service = Server::start(&place, &["--jobs", "0"]);
     let secret = token(&place, "ann", "read");
     let bearer = format!("bEaReR {secret}");
