@@ -348,7 +348,8 @@ impl CrackGrowth for BondStrain<'_> {
             points_solved: self.equilibrium.points(&self.body),
             solves,
             iterations,
-            refined: 0,
+            refined: [0; 2],
+            step_error: 0.0,
             solver: Some(solver),
         }
     }

@@ -174,7 +174,8 @@ impl<'a, P: CrackedPlate> Cracks<'a, P> {
             let remedy = "give a crack with an end in the material";
             return Err(input_missing(specimen.crack_key(), "contains no crack that can grow", remedy));
         }
-        let state = CracksState { lines: specimen.crack_lines(), tips, step: 0.0, balance: EnergyBalance::default() };
+        let state =
+            CracksState { lines: specimen.crack_lines(), tips, step: 0.0, balance: EnergyBalance::default(), step_error: 0.0 };
         let plate = P::build(case, &state)?;
         let scales = plate.scales(case);
         let (curve, warnings) = (Vec::new(), Vec::new());
@@ -224,9 +225,15 @@ pub struct InitialTips {
 
 /// Reads the initial tips of a case: those of the first row of its prediction by K.
 pub fn initial_tips<P: CrackedPlate>(case: &Case) -> Result<InitialTips> {
+    Ok(initial_tips_on::<P>(case)?.0)
+}
+
+/// The same with the plate in equilibrium.
+pub fn initial_tips_on<P: CrackedPlate>(case: &Case) -> Result<(InitialTips, P)> {
     let law = Walker { paris: ParisLaw { c: 1.0, m: 1.0 }, gamma: 1.0, threshold: 0.0 };
     let mut cracks = Cracks::<P>::start(case, Box::new(law))?;
     cracks.open()?;
     let (in_contact, contact_residual) = (cracks.plate.is_in_contact(), cracks.plate.contact_residual());
-    Ok(InitialTips { tips: cracks.now().tips.to_vec(), in_contact, contact_residual, warnings: cracks.warnings() })
+    let (tips, warnings) = (cracks.now().tips.to_vec(), cracks.warnings());
+    Ok((InitialTips { tips, in_contact, contact_residual, warnings }, cracks.plate))
 }

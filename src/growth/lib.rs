@@ -117,13 +117,15 @@ pub struct Fields {
 }
 
 /// What a run took.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct SolverStatistics {
     pub points_solved: usize,
     pub solves: usize,
     pub iterations: usize,
-    /// Times that nodes were made finer than usual.
-    pub refined: u32,
+    /// Times that nodes were made finer than usual, near tips and rims and far from them.
+    pub refined: [u32; 2],
+    /// Cycles that its steps may be off by.
+    pub step_error: f64,
     /// What solved; `None` of a hand calculation.
     pub solver: Option<SolverUsed>,
 }

@@ -18,6 +18,7 @@ use perilife_nodes::factors::{self, TipFactors};
 use perilife_nodes::field::{Discretisation, Local};
 use perilife_nodes::resolution::{ElementFreeSettings, Resolution, room};
 use perilife_nodes::solve::{Loaded, Solution, raster, raster_fields, solve_with};
+use perilife_nodes::stress_field::{Corner, stress_pieces};
 use perilife_plate::specimen::{CrackLine, Point};
 use perilife_plate::williams::Elasticity;
 use perilife_points::solver::SolverUsed;
@@ -47,8 +48,8 @@ pub struct NodePlate {
 /// What a run carries of its plate of nodes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NodeState {
-    /// How much finer nodes are than usual, as K of the initial tips asks.
-    fineness: f64,
+    /// How much finer nodes are than usual near tips and rims, and far from them, as K of the initial tips asks.
+    fineness: [f64; 2],
     /// Work of the loads of the last equilibrium at the nominal load, J.
     work: f64,
     solves: usize,
@@ -84,7 +85,17 @@ impl NodePlate {
         Some(displacement.map(|u| case.loading.share(self.state.work, case.specimen.crack_length) * u))
     }
 
-    fn factors(&mut self, case: &Case, cracks: &CracksState) -> Result<Vec<[f64; 2]>> {
+    /// Stress and displacement under the maximum load, of the last equilibrium.
+    pub fn stress(&self, case: &Case) -> Vec<Vec<Corner>> {
+        let share = case.loading.share(self.state.work, case.specimen.crack_length);
+        let of = |(plate, solution): &(Discretisation, Solution)| {
+            stress_pieces(&case.specimen, plate, &solution.whole.u, case.material.plane, share)
+        };
+        self.solved.as_ref().map(of).unwrap_or_default()
+    }
+
+    fn factors(&mut self, case: &Case, cracks: &CracksState, fineness: [f64; 2]) -> Result<Vec<[f64; 2]>> {
+        self.state.fineness = fineness;
         self.solve(case, cracks)?;
         // A tip that is shut has none, and K_II of its last places in contact is noise.
         let of = |reading: Reading| if reading.is_closed { [0.0; 2] } else { reading.factors };
@@ -96,7 +107,7 @@ impl CrackedPlate for NodePlate {
     type Saved = NodeState;
 
     fn build(case: &Case, _cracks: &CracksState) -> Result<Self> {
-        let state = NodeState { fineness: 1.0, work: 0.0, solves: 0, nodes: 0, warnings: Vec::new() };
+        let state = NodeState { fineness: [1.0; 2], work: 0.0, solves: 0, nodes: 0, warnings: Vec::new() };
         let settings = case.nodes();
         Ok(NodePlate {
             settings,
@@ -116,12 +127,24 @@ impl CrackedPlate for NodePlate {
         if self.settings.is_final {
             return self.solve(case, cracks);
         }
-        self.state.fineness = 1.0 / FINER;
         // Where they are too coarse to tell anything, the next ones say so.
-        let mut before = self.factors(case, cracks).unwrap_or_else(|_| vec![[f64::NAN; 2]; cracks.tips.len()]);
+        let unknown = |_| vec![[f64::NAN; 2]; cracks.tips.len()];
+        let mut before = self.factors(case, cracks, [1.0 / FINER; 2]).unwrap_or_else(unknown);
+        // How much finer many nodes get far from tips and rims; not at all where finer ones there do not change K.
+        let mut elsewhere = FINER;
         for refinement in 0..=REFINEMENTS_MOST[0] {
-            self.state.fineness *= FINER;
-            let now = self.factors(case, cracks)?;
+            let [tips, others] = self.state.fineness;
+            let mut now = self.factors(case, cracks, [FINER * tips, elsewhere * others])?;
+            if refinement > 0 && elsewhere > 1.0 && self.state.nodes >= MANY {
+                let all = (self.solved.take(), self.state.work);
+                let at_tips = self.factors(case, cracks, [FINER * tips, others])?;
+                if largest_difference(&now, &at_tips).1 <= self.settings.tolerance {
+                    (now, elsewhere) = (at_tips, 1.0);
+                } else {
+                    self.state.fineness[1] *= FINER;
+                    (self.solved, self.state.work) = all;
+                }
+            }
             let (tip, change) = largest_difference(&before, &now);
             let nodes = self.state.nodes;
             let most = REFINEMENTS_MOST[usize::from(nodes >= MANY)];
@@ -263,8 +286,8 @@ impl CrackedPlate for NodePlate {
 
     fn statistics(&self) -> SolverStatistics {
         let NodeState { solves, nodes, .. } = self.state;
-        let refined = (self.state.fineness.ln() / FINER.ln()).round().max(0.0) as u32;
-        SolverStatistics { points_solved: nodes, solves, iterations: 0, refined, solver: Some(SolverUsed::Direct) }
+        let refined = self.state.fineness.map(|fineness| (fineness.ln() / FINER.ln()).round().max(0.0) as u32);
+        SolverStatistics { points_solved: nodes, solves, refined, solver: Some(SolverUsed::Direct), ..Default::default() }
     }
 
     fn warnings(&self) -> Vec<String> {

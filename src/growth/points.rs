@@ -294,7 +294,8 @@ impl CrackedPlate for PointPlate {
             points_solved: self.equilibrium.points(&self.body),
             solves: self.solves,
             iterations: self.iterations,
-            refined: 0,
+            refined: [0; 2],
+            step_error: 0.0,
             solver: Some(self.equilibrium.used()),
         }
     }

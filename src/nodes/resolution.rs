@@ -84,10 +84,10 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// Everything finer by a factor.
-    pub fn finer(&self, by: f64) -> Self {
+    /// Finer by a factor near tips, rims and ligaments, and by one far from them.
+    pub fn finer(&self, [by, by_far]: [f64; 2]) -> Self {
         let Resolution { far, hold, in_radius, fineness, .. } = *self;
-        Resolution { far: far / by, hold: by * hold, in_radius: by * in_radius, fineness: by * fineness, ..*self }
+        Resolution { far: far / by_far, hold: by * hold, in_radius: by * in_radius, fineness: by * fineness, ..*self }
     }
 
     /// Cells of a plate with these cracks, and the spacing asked for at every tip, m.

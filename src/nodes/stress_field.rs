@@ -1,6 +1,8 @@
 //! Stress and displacement over a plate of nodes as convex pieces, which rims and cracks bound: what lies beside a flank is read from its own
 //! side only, so that a crack opens between pieces and no stress is carried over it.
 
+use std::collections::HashMap;
+
 use rayon::prelude::*;
 
 use super::cells::{Dividers, middle};
@@ -45,19 +47,26 @@ pub fn stress_pieces(specimen: &Specimen, plate: &Discretisation, u: &[f64], pla
         let (near, spacing) = (dividers.of_cell(leaf), grid.spacing(leaf));
         let parts = (spacing / finest).ceil().clamp(1.0, 16.0) as usize;
         let pieces = near.divide(specimen, squares(grid.bounds(leaf), parts), spacing);
+        // What nothing divides is read once at a corner of four pieces.
+        let is_whole = near.sides.is_empty() && near.cracks.is_empty();
+        let mut known: HashMap<[u64; 2], (Point, Stress)> = HashMap::new();
         let read = |piece: &Vec<Point>| {
             let centre = middle(piece);
             let corner = |k: usize| {
                 let (at, next) = (piece[k], piece[(k + 1) % piece.len()]);
-                let (displacement, gradient) = plate.displacement_in(leaf, u, along(at, centre, INWARDS), local)?;
+                let key = at.map(f64::to_bits);
+                let (displacement, stress) = match known.get(&key).copied().filter(|_| is_whole) {
+                    Some(found) => found,
+                    None => {
+                        let (moved, gradient) = plate.displacement_in(leaf, u, along(at, centre, INWARDS), local)?;
+                        let stress = Stress::of(plate.elasticity(), plane, &gradient).times(share);
+                        (moved.map(|u| share * u), stress)
+                    }
+                };
+                known.insert(key, (displacement, stress));
                 let beside = along(at, next, 0.5);
                 let is_on = |[a, b]: &[Point; 2]| distance_to_segment(beside, *a, *b) < ON_RIM * spacing;
-                Some(Corner {
-                    at,
-                    displacement: displacement.map(|u| share * u),
-                    stress: Stress::of(plate.elasticity(), plane, &gradient).times(share),
-                    is_free: near.sides.iter().chain(&near.cracks).any(is_on),
-                })
+                Some(Corner { at, displacement, stress, is_free: near.sides.iter().chain(&near.cracks).any(is_on) })
             };
             (0..piece.len()).map(corner).collect::<Option<Vec<Corner>>>()
         };

@@ -10,7 +10,8 @@ use perilife_calibration::inspection::{InspectFrom, Inspection, TipLengths};
 use perilife_calibration::population::intervals::Specimen;
 use perilife_calibration::population::plate::{Left, NoBand, Plate, PlateBand, Quantiles};
 use perilife_growth::case::{Case, Lot, Method, Model, coarse_points, usual_nodes};
-use perilife_growth::predict::error_estimate::{ErrorEstimate, error_estimate};
+use perilife_growth::predict::error_estimate::{ErrorEstimate, estimate};
+use perilife_growth::predict::moment::StressField;
 use perilife_growth::predict::{Prediction, Silent, predict};
 use perilife_measured::MeasuredCurve;
 
@@ -230,6 +231,8 @@ pub struct Quality {
     /// `None` where not asked for; else the estimate, or why there is none.
     estimate: Option<std::result::Result<ErrorEstimate, String>>,
     pub(super) second: Option<SecondOpinion>,
+    /// Stress late in life, where the estimate has solved for it.
+    pub(super) stress: Option<StressField>,
 }
 
 /// `cross_check` of a result: the life by the other engine.
@@ -248,10 +251,15 @@ pub struct SecondOpinion {
 }
 
 impl Quality {
-    pub fn of(case: &Case, prediction: &Prediction, [estimate, cross_check]: [bool; 2]) -> Quality {
-        let estimate = (estimate && prediction.life().is_some()).then(|| error_estimate(case, prediction));
+    pub fn of(case: &Case, prediction: &Prediction, [is_estimated, cross_check]: [bool; 2]) -> Quality {
+        let mut stress = None;
+        let estimate = (is_estimated && prediction.life().is_some()).then(|| {
+            let (estimate, moment) = estimate(case, prediction)?;
+            stress = moment.filter(|_| !case.output.tables_only).map(|moment| moment.stress());
+            Ok(estimate)
+        });
         let second = cross_check.then(|| second_opinion(case, prediction));
-        Quality { estimate, second }
+        Quality { estimate, second, stress }
     }
 
     pub(super) fn basis(&self) -> Option<&str> {

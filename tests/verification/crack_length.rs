@@ -1,8 +1,9 @@
 //! Rows of a curve: of one crack, with the error that is stated, as long as a laboratory would find it.
 
-use perilife_base::units::MM;
+use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_growth::predict::error_estimate::error_estimate;
 use perilife_growth::predict::{GoverningCrack, Prediction, Silent, predict};
+use perilife_growth::record::CurvePoint;
 use perilife_plate::specimen::Point;
 use perilife_points::solver::SolverKind;
 use perilife_study::cases::{AUTO, NODES, POINTS, Reference, case, compare, largest};
@@ -96,6 +97,34 @@ fn a_coarse_run_states_a_large_error() {
     let tips = compare(&run, reference.tips().unwrap(), f64::INFINITY);
     let off = largest(tips.iter().flat_map(|tip| tip.cycles)).abs();
     assert!(off > 1.0 && off < stated && stated < 4.0, "{off} of {stated}");
+}
+
+/// Where K asks for finer nodes near tips and rims alone, those far from them stay as they are.
+#[test]
+fn nodes_get_finer_where_k_asks_for_it() {
+    let keys = [AUTO, "model.tolerance_percent=1", "stop.cycles_max=10"].map(str::to_owned);
+    let run = predict(&Reference::named("three_point_bending").unwrap().case(&keys).unwrap(), &Silent).unwrap();
+    let ([at_tips, far], k_i) = (run.figures.refined, run.curve[0].tips[0].factors.unwrap()[0] / MPA_SQRT_M);
+    println!("{at_tips} and {far} times, {} nodes, {k_i:.4}", run.figures.points_solved);
+    assert!(at_tips > far && (k_i / 12.954 - 1.0).abs() < 1.5e-3, "{at_tips} {far} {k_i}");
+}
+
+/// Every tip grows by its own rate over the same cycles, whichever leads: `∫ r dN` over the rows is what it has grown, but for steps at kinks. What a
+/// tip is short of is made up for once, and takes no cycles.
+#[test]
+fn tips_that_lead_in_turn_grow_by_their_own_rates() {
+    let text = cracked_plate(100.0, 200.0, &[[[-20.0, -4.0], [-8.0, -4.0]], [[8.0, 4.0], [20.0, 4.0]]]);
+    let run = predict(&case(&text, NODES).unwrap(), &Silent).unwrap();
+    let rows: Vec<_> = run.curve.iter().take_while(|row| row.cycles < 0.9 * run.life_cycles()).collect();
+    for tip in 0..4 {
+        let grown = |pair: &[&CurvePoint]| {
+            let [from, to] = [0, 1].map(|row: usize| pair[row].tips[tip].growth_rate.unwrap());
+            (pair[1].cycles - pair[0].cycles) * (to - from) / (to / from).ln()
+        };
+        let (by_rates, growth) = (rows.windows(2).map(grown).sum::<f64>(), rows.last().unwrap().tips[tip].growth);
+        println!("tip {tip}: {:.4} by its rates, {:.4} mm", 1e3 * by_rates, 1e3 * growth);
+        assert!((by_rates / growth - 1.0).abs() < 0.015, "tip {tip}: {by_rates} for {growth}");
+    }
 }
 
 /// Bonds that fail by their own strain have no error that a finer lattice would tell.

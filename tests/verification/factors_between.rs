@@ -4,7 +4,8 @@ use perilife_base::input::{Document, Folder};
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_growth::case::Case;
 use perilife_growth::cracks::initial_tips;
-use perilife_growth::cracks::steering::{equivalent_factor, factors_across, kink_angle};
+use perilife_growth::cracks::scales::Scales;
+use perilife_growth::cracks::steering::{Steering, equivalent_factor, factors_across, kink_angle};
 use perilife_growth::nodes::NodePlate;
 use perilife_growth::predict::{Silent, predict};
 
@@ -55,4 +56,22 @@ fn factors_turn_with_the_crack() {
     let (f11, f21) = (1.0 - 0.375 * pi * pi * m * m, 0.5 * pi * m - (4.0 * pi / 3.0 + pi.powi(3) / 48.0) * m.powi(3));
     let [k_i, k_ii] = factors_across([1.0, 0.0], pi * m);
     assert!((k_i - f11).abs() < 0.006 && (k_ii - f21).abs() < 0.006, "{k_i} {f11}, {k_ii} {f21}");
+}
+
+/// Readings that lie to one side and the other in turn count together, those of a crack that curves two by two.
+#[test]
+fn aims_that_zigzag_make_one_line() {
+    let scales = Scales::of_nodes(&case(&[[-4.0, -4.0], [4.0, 4.0]]), 1e-3).steering;
+    let slope = |aims: &[f64]| {
+        let mut steering = Steering::default();
+        for (k, aim) in aims.iter().enumerate() {
+            steering.read([1.0, -0.5 * aim], k as f64, [1.0, 0.0], &scales);
+        }
+        steering.slope(&scales, |growth| growth)
+    };
+    // A fifth of what the last two say: Σ (x - x̄) y / Σ (x - x̄)² of four aims ±y.
+    let zigzag = slope(&[0.0, -0.01, 0.01, -0.01, 0.01]);
+    assert!((zigzag - 0.2 * 0.02).abs() < 1e-5, "{zigzag}");
+    let curve = slope(&[0.0, 0.001, 0.004, 0.009, 0.016]);
+    assert!((curve - 0.007).abs() < 1e-5, "{curve}");
 }

@@ -129,7 +129,7 @@ pub fn usual_nodes(specimen: &Specimen) -> ElementFreeSettings {
 
 /// Nodes by which K of a case on points is judged, those for the least error that can be asked for; of one on nodes that were made finer
 /// `refined` times: with the radius of influence of those and as fine, finer still beside a run with such a radius.
-pub fn finer_nodes(case: &Case, refined: u32) -> ElementFreeSettings {
+pub fn finer_nodes(case: &Case, refined: [u32; 2]) -> ElementFreeSettings {
     let mut nodes = nodes_for(&case.specimen, TOLERANCE_LEAST, BasisKind::Linear);
     let Model::Nodes(own) = case.model else { return nodes };
     let of_own = own.resolution;
@@ -139,7 +139,7 @@ pub fn finer_nodes(case: &Case, refined: u32) -> ElementFreeSettings {
     nodes.resolution.hold *= times;
     nodes.resolution.reach = REACH_OF_FINER.max(of_own.reach);
     nodes.resolution.support = nodes.resolution.support.max(of_own.support);
-    nodes.resolution = nodes.resolution.finer(REFINED.powi(refined as i32));
+    nodes.resolution = nodes.resolution.finer(refined.map(|times| REFINED.powi(times as i32)));
     nodes.is_final = true;
     nodes
 }

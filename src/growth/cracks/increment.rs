@@ -199,7 +199,15 @@ impl<P: CrackedPlate> Cracks<'_, P> {
             let cycles = kink::cycles(growth, [step.rate, rate], [step.factor, factor]);
             Counted { cycles, curvature_share: 0.0, bend: 0.0 }
         } else if self.scales.by_root && growth > 0.0 && rate.is_finite() {
-            step::cycles_by_root(step.past, [step.rate, rate], step.root, growth)
+            let root_after = |way: f64| (step.root.powi(2) + way).max(0.0).sqrt();
+            let (before, then) = (step.past.map(|[rate, way]| [root_after(-way), rate]), root_after(growth));
+            if let Some([root, of_it]) = before.filter(|_| is_smooth) {
+                // The step before by the parabola through the rate at the end of this one.
+                let late = step::cycles_by_root(Some([then, rate]), [of_it, step.rate], [root, step.root]).cycles;
+                let from = self.curve[..self.curve.len() - 1].iter().rfind(|row| row.is_solved).map_or(0.0, |row| row.cycles);
+                self.state.step_error += 0.5 * (late + from - self.last().cycles);
+            }
+            step::cycles_by_root(before, [step.rate, rate], [step.root, then])
         } else {
             step::cycles(step.past, step.rate, rate, growth)
         };
@@ -210,8 +218,11 @@ impl<P: CrackedPlate> Cracks<'_, P> {
             FactorCourse::new(Course { weight, gain: (rate / step.rate).ln(), bend }, [step.factor, factor])
         });
         for (index, tip) in self.state.tips.iter_mut().enumerate().filter(|_| self.scales.by_root) {
-            let growth = if is_smooth && index != step.lead { growths[index] } else { 0.0 };
-            tip.count_arrears(growth, (step.rate, rate), growths[step.lead]);
+            if is_smooth {
+                tip.count_arrears(growths[index], (step.rate, rate), growths[step.lead]);
+            } else {
+                tip.arrears = 0.0;
+            }
         }
         let fastest = self.fastest().map_or(0.0, |tip| self.state.tips[tip].rate);
         let kinks = |tip: &Tip| tip.begins_kink() && !tip.is_at_rest(fastest);

@@ -148,7 +148,7 @@ impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
     }
 
     fn statistics(&self) -> SolverStatistics {
-        self.plate.statistics()
+        SolverStatistics { step_error: self.state.step_error, ..self.plate.statistics() }
     }
 
     fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {

@@ -5,8 +5,8 @@
 //!
 //! The direction is read at the tip off a straight line through the last aims: a mean over them would trail behind a curving crack by half
 //! of their length. On points a single reading of K_II scatters with how the bonds around the tip lie, and the line goes through the aims
-//! of the last two horizons of growth; on nodes it goes through the last two, over the root of
-//! the length of crack ([`SteeringScales`]).
+//! of the last two horizons of growth; on nodes it goes through the last two, or the last four where these lie to one side and the other in
+//! turn, over the root of the length of crack ([`SteeringScales`]).
 
 use serde::{Deserialize, Serialize};
 
@@ -79,7 +79,7 @@ impl Steering {
         let [least, most] = scales.memory;
         self.aims.push([growth, aim]);
         self.aims.retain(|aim| aim[0] >= growth - (scales.memory_steps * step).clamp(least, most));
-        self.aims.drain(..self.aims.len().saturating_sub(scales.aims));
+        self.aims.drain(..self.aims.len().saturating_sub(scales.aims[1]));
     }
 
     /// Direction for the next `step` of growth, m: the aim at its middle. Aims lie on a straight line over `smooth_in` of the growth.
@@ -107,8 +107,11 @@ impl Steering {
 
     /// Middle and slope of the straight line through the aims.
     fn line(&self, scales: &SteeringScales, smooth_in: &impl Fn(f64) -> f64) -> ([f64; 2], f64) {
-        let count = self.aims.len() as f64;
-        let aims = || self.aims.iter().map(|&[growth, aim]| [smooth_in(growth), aim]);
+        let rise = |k: usize| self.aims[k + 1][1] - self.aims[k][1];
+        let zigzags = self.aims.len() == scales.aims[1] && (1..self.aims.len() - 1).all(|k| rise(k) * rise(k - 1) < 0.0);
+        let from = if zigzags { 0 } else { self.aims.len().saturating_sub(scales.aims[0]) };
+        let count = (self.aims.len() - from) as f64;
+        let aims = || self.aims[from..].iter().map(|&[growth, aim]| [smooth_in(growth), aim]);
         let [x, y] = [0, 1].map(|i| aims().map(|aim| aim[i]).sum::<f64>() / count);
         let product = |i: usize| aims().map(|aim| (aim[0] - x) * (aim[i] - [x, y][i])).sum::<f64>();
         let spread = product(0) + count * scales.slope.powi(2);

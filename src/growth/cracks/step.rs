@@ -42,11 +42,13 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let is_last = limits.iter().any(|(most, is_last)| *is_last && *most <= limit * (1.0 + 1e-9));
         let least = self.scales.step.bounds[0].min(self.scales.step.first);
         let step = if is_last { limit } else { limit.min(self.state.step.max(least)) };
-        let share = |tip: &Tip| {
+        // Cycles are those of the lead's growth: it makes up for nothing.
+        let of_tip = |(index, tip): (usize, &Tip)| {
             let share = tip.share(lead, step, self.scales.by_root).min(SHARE_MOST);
-            if tip.is_growing() { (step * share + tip.arrears).max(0.0) } else { 0.0 }
+            let arrears = if index == fastest { 0.0 } else { tip.arrears };
+            if tip.is_growing() { (step * share + arrears).max(0.0) } else { 0.0 }
         };
-        let mut lengths: Vec<f64> = self.state.tips.iter().map(share).collect();
+        let mut lengths: Vec<f64> = self.state.tips.iter().enumerate().map(of_tip).collect();
         let length_after = |lengths: &[f64]| {
             let growth: Vec<f64> = self.state.tips.iter().zip(lengths).map(|(tip, length)| tip.growth + length).collect();
             let (specimen, length) = (&self.case.specimen, self.case.specimen.crack_length_after(&growth));
@@ -116,6 +118,11 @@ pub(super) struct Counted {
     pub bend: f64,
 }
 
+/// Whether a parabola in t from 0 to 1 that adds so much to the cycles is counted: it rises or falls all the way with the rates, or adds little.
+fn is_counted(share: f64, gain: f64, bend: f64) -> bool {
+    share.abs() < CURVATURE_SHARE_MOST || bend.abs() < gain.abs()
+}
+
 /// Cycles of a step of the fastest tip: its rates at the start of the step before, where known, with that step's length, at the
 /// start and at the end of this one, m/cycle, whose length is `grown`, m.
 pub(super) fn cycles(past: Option<[f64; 2]>, rate: f64, rate_then: f64, grown: f64) -> Counted {
@@ -124,16 +131,12 @@ pub(super) fn cycles(past: Option<[f64; 2]>, rate: f64, rate_then: f64, grown: f
     Counted { cycles: grown * mean_inverse(rate, rate_then) * (1.0 + counted), curvature_share, bend: 6.0 * counted }
 }
 
-/// The same with ln r a parabola in the root x of the length of crack, `∫ da/r = ∫ 2x dx/r`, x from that at the start, `root`, m^½, to
-/// √(root² + grown).
-pub(super) fn cycles_by_root(past: Option<[f64; 2]>, [rate, rate_then]: [f64; 2], root: f64, grown: f64) -> Counted {
-    let then = (root * root + grown).sqrt();
+/// The same with ln r a parabola in the root x of the length of crack, `∫ da/r = ∫ 2x dx/r`, x between two roots, m^½, and through the root
+/// and rate `beside` them, where known.
+pub(super) fn cycles_by_root(beside: Option<[f64; 2]>, [rate, rate_then]: [f64; 2], [root, then]: [f64; 2]) -> Counted {
     let rise = then - root;
     let slope = (rate_then / rate).ln() / rise;
-    let curvature = past.map_or(0.0, |[before, way]| {
-        let root_before = (root * root - way).max(0.0).sqrt();
-        (slope - (rate / before).ln() / (root - root_before)) / (then - root_before)
-    });
+    let curvature = beside.map_or(0.0, |[at, of_it]| ((of_it / rate).ln() / (at - root) - slope) / (at - then));
     let integral = |curvature: f64| {
         let inverse = |x: f64| 2.0 * (root + x) * (-(slope * x + curvature * x * (x - rise))).exp();
         integrate(inverse, 0.0, rise, 1e-10).value / rate
@@ -141,8 +144,9 @@ pub(super) fn cycles_by_root(past: Option<[f64; 2]>, [rate, rate_then]: [f64; 2]
     let straight = integral(0.0);
     let share = integral(curvature) / straight - 1.0;
     let curvature_share = if share.is_finite() { share } else { 0.0 };
-    let is_counted = curvature_share.abs() < CURVATURE_SHARE_MOST && curvature.is_finite();
-    let (counted, bend) = if is_counted { (curvature_share, curvature * rise * rise) } else { (0.0, 0.0) };
+    let bend = curvature * rise * rise;
+    let is_counted = curvature.is_finite() && is_counted(curvature_share, slope * rise, bend);
+    let (counted, bend) = if is_counted { (curvature_share, bend) } else { (0.0, 0.0) };
     Counted { cycles: straight * (1.0 + counted), curvature_share, bend }
 }
 

@@ -122,7 +122,7 @@ pub struct Tip {
     before: Option<[f64; 2]>,
     /// Rate before the last increment and its own growth in it, where no corner lies between.
     past: Option<[f64; 2]>,
-    /// By how much it is short of the growth that the rates at both ends of the last increment ask for, m: made up for in the next one.
+    /// By how much it is short of the growth that the rates at both ends of all increments ask for, m: made up for in the next one.
     pub(super) arrears: f64,
 }
 
@@ -243,7 +243,7 @@ impl Tip {
     }
 
     /// Counts what it is short of after an increment in which it grew by `growth` and the tip `lead` by `step`, m: `∫ r/r_lead da`, ln of the
-    /// ratio of rates linear between both ends, less what it grew.
+    /// ratio of rates linear between both ends, less what it grew, beside what it was short of before.
     pub(super) fn count_arrears(&mut self, growth: f64, (lead_before, lead_rate): (f64, f64), step: f64) {
         let Some([before, _]) = self.before.filter(|_| !self.begins_kink()) else {
             self.arrears = 0.0;
@@ -252,7 +252,7 @@ impl Tip {
         let [from, to] = [before / lead_before, self.rate / lead_rate];
         let gain = (to / from).ln();
         let mean = if gain.abs() < 1e-6 { from } else { (to - from) / gain };
-        let short = step * mean - growth;
+        let short = step * mean - growth + self.arrears;
         // Rates that jump, as at a joint, lie on no line.
         self.arrears = if short.is_finite() { short.clamp(-0.5 * growth, 0.5 * growth) } else { 0.0 };
     }
@@ -336,6 +336,8 @@ pub struct CracksState {
     pub step: f64,
     /// K against the energy that the plate releases.
     pub balance: EnergyBalance,
+    /// Half of the cycles by which parabolas through the rate after a step count more than those through the rate before it, of all steps.
+    pub step_error: f64,
 }
 
 impl CracksState {

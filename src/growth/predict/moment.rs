@@ -1,17 +1,18 @@
 //! A plate as it stood at a row of its run: its cracks as they had grown, and its stress there.
 
 use super::Prediction;
-use crate::case::{Case, Engine, initial_plate};
+use crate::case::{Case, Engine, Model};
+use crate::cracks::initial_tips_on;
+use crate::nodes::NodePlate;
 use crate::record::{CurvePoint, TipRecord};
 use perilife_base::error::Result;
-use perilife_nodes::field::Discretisation;
-use perilife_nodes::solve::solve;
-use perilife_nodes::stress_field::{Corner, stress_pieces};
+use perilife_nodes::resolution::ElementFreeSettings;
+use perilife_nodes::stress_field::Corner;
 use perilife_plate::specimen::{CrackLine, Specimen, TipSeed};
 use perilife_points::crack_tip::TipState;
 
 /// Share of the cycles at which the stress of a plate is shown: cracks are long then, and the plate is not yet about to part.
-const SHOWN_AT: f64 = 0.9;
+pub(super) const SHOWN_AT: f64 = 0.9;
 
 /// Stress and displacement of a plate at maximum load.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,24 +24,34 @@ pub struct StressField {
     pub pieces: Vec<Vec<Corner>>,
 }
 
+/// A plate in equilibrium at a row of a run.
+pub struct Moment {
+    pub(super) cycles: f64,
+    /// The case with the cracks of the row.
+    pub(super) case: Case,
+    pub(super) plate: NodePlate,
+}
+
+impl Moment {
+    pub fn stress(&self) -> StressField {
+        StressField { cycles: self.cycles, cracks: self.case.specimen.crack_lines(), pieces: self.plate.stress(&self.case) }
+    }
+}
+
 /// The stress of the plate late in its life, by nodes at the cracks that the run has made; `None` of a run without tips on a plate, and
 /// where the plate did not stand still long enough to be looked at.
-/// Errors: as [`solve`].
+/// Errors: no equilibrium.
 pub fn stress_field(case: &Case, prediction: &Prediction) -> Result<Option<StressField>> {
     if !matches!(case.engine(), Engine::Nodes | Engine::Points) {
         return Ok(None);
     }
     let (rows, life) = (rows_before_meeting(&prediction.curve), prediction.life_cycles());
     let Some(at) = rows.iter().rposition(|row| row.is_solved && row.cycles <= SHOWN_AT * life) else { return Ok(None) };
-    let case = Case { specimen: grown(&case.specimen, &rows[..=at]), ..case.clone() };
-    let pieces = pieces(&case, &initial_plate(&case)?)?;
-    Ok(Some(StressField { cycles: rows[at].cycles, cracks: case.specimen.crack_lines(), pieces }))
-}
-
-fn pieces(case: &Case, plate: &Discretisation) -> Result<Vec<Vec<Corner>>> {
-    let solution = solve(&case.specimen, plate, case.nodes().resolution.far, case.loading.maximum)?;
-    let share = case.loading.share(solution.work, case.specimen.crack_length);
-    Ok(stress_pieces(&case.specimen, plate, &solution.u, case.material.plane, share))
+    let nodes = ElementFreeSettings { is_final: true, ..case.nodes() };
+    let mut case = Case { specimen: grown(&case.specimen, &rows[..=at]), model: Model::Nodes(nodes), ..case.clone() };
+    case.loading.residual = None;
+    let (_, plate) = initial_tips_on::<NodePlate>(&case)?;
+    Ok(Some(Moment { cycles: rows[at].cycles, case, plate }.stress()))
 }
 
 /// The last row before which no tip has met anything.

@@ -27,8 +27,10 @@ pub struct RunFigures {
     pub solves: usize,
     /// Solver iterations in all (0 for a direct solver).
     pub iterations: usize,
-    /// Times that nodes were made finer than usual.
-    pub refined: u32,
+    /// Times that nodes were made finer than usual, near tips and rims and far from them.
+    pub refined: [u32; 2],
+    /// Cycles that its steps may be off by.
+    pub step_error: f64,
     /// What solved; `None` of a hand calculation.
     pub solver: Option<SolverUsed>,
     /// Actual lattice spacing, m.
@@ -52,6 +54,7 @@ impl RunFigures {
             solves: statistics.solves,
             iterations: statistics.iterations,
             refined: statistics.refined,
+            step_error: statistics.step_error,
             solver: statistics.solver,
             spacing: body.map_or(f64::NAN, |body| body.lattice.spacing),
             horizon: body.map_or(f64::NAN, Body::horizon),
