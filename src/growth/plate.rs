@@ -1,7 +1,5 @@
 //! What a plate of points and bonds shows: its fields, and what a rigid turn of it costs.
 
-use std::collections::HashMap;
-
 use super::Fields;
 use perilife_points::body::lattice::LANES;
 use perilife_points::body::{Body, Bond};
@@ -45,23 +43,21 @@ pub(super) fn fields(body: &Body, bonds: &Bonds, displacement: &[f64], lives: &[
     };
     let points = || body.points.iter().map(|&place| place as usize);
     let least = least_lives(body, bonds, lives);
-    let life = |place: usize| least.get(&place).copied().unwrap_or(1.0);
     Fields {
         displacement: points().map(motion).collect(),
         damage: points().map(damage).collect(),
-        remaining_life: points().map(life).collect(),
+        remaining_life: points().map(|place| least[place]).collect(),
         stress: Vec::new(),
     }
 }
 
-/// Least remaining life of the intact bonds of every place that has one below 1.
-fn least_lives(body: &Body, bonds: &Bonds, lives: &[(Bond, f64)]) -> HashMap<usize, f64> {
-    let mut least: HashMap<usize, f64> = HashMap::new();
+/// Least remaining life of the intact bonds of every place.
+fn least_lives(body: &Body, bonds: &Bonds, lives: &[(Bond, f64)]) -> Vec<f64> {
+    let mut least = vec![1.0_f64; body.places()];
     for &(bond, life) in lives.iter().filter(|(bond, _)| bonds.is_intact(*bond)) {
         let (_, a, b) = body.ends(bond);
         for place in [a, b] {
-            let of_place = least.entry(place).or_insert(1.0);
-            *of_place = of_place.min(life.clamp(0.0, 1.0));
+            least[place] = least[place].min(life.clamp(0.0, 1.0));
         }
     }
     least

@@ -1,7 +1,5 @@
 //! Pieces that breaking has cut off: set aside when nothing loads them, `severed` when both sides are loaded.
 
-use std::collections::HashSet;
-
 use crate::body::{Body, Bond};
 use crate::state::Bonds;
 
@@ -36,21 +34,19 @@ pub fn remove_fragments(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Conn
     if loose && !loads_are_connected(body, bonds) {
         return Connectivity::Severed;
     }
-    // Points that are known to hang together.
-    let mut together = HashSet::new();
+    let mut marks = Marks { of: vec![0; body.places()], together: Vec::new() };
     for &bond in broken {
         let (_, a, b) = body.ends(bond);
-        let Some(piece) = cut_off(body, bonds, a, b, &mut together) else { continue };
+        let Some(mut piece) = cut_off(body, bonds, [a, b], &mut marks) else { continue };
+        piece.sort_unstable();
         let inside = piece.iter().any(|&node| is_loaded(body, node));
-        let outside = loaded_nodes(body, bonds).any(|node| !piece.contains(&node));
+        let outside = loaded_nodes(body, bonds).any(|node| piece.binary_search(&node).is_err());
         if inside && outside {
             return Connectivity::Severed;
         }
         if !inside {
-            together.clear();
-            let mut members: Vec<usize> = piece.into_iter().filter(|&node| node < body.places()).collect();
-            members.sort_unstable();
-            for place in members {
+            marks.forget();
+            for place in piece {
                 set_aside(body, bonds, place, &mut aside);
             }
         }
@@ -95,37 +91,70 @@ fn is_loaded(body: &Body, node: usize) -> bool {
         || boundary.clamped.iter().any(|c| c.0 == place)
 }
 
-/// The piece around `a` or `b` that has lost contact with the other, if any; pieces without bonds do not count. Points found to
-/// hang `together` are remembered: along a crack one way around its tip will do for all its bonds.
-fn cut_off(body: &Body, bonds: &Bonds, a: usize, b: usize, together: &mut HashSet<usize>) -> Option<HashSet<usize>> {
-    let mut seen = [HashSet::from([a]), HashSet::from([b])];
-    let mut front = [vec![a], vec![b]];
-    let mut is_known = [a, b].map(|end| together.contains(&end));
+/// What is known of places: bits 1 and 2 of those seen from either end of a bond, 4 of those that hang together.
+struct Marks {
+    of: Vec<u8>,
+    together: Vec<usize>,
+}
+
+const TOGETHER: u8 = 4;
+
+impl Marks {
+    /// Lets all that was seen hang together.
+    fn join(&mut self, seen: [Vec<usize>; 2]) {
+        for place in seen.into_iter().flatten() {
+            if self.of[place] & TOGETHER == 0 {
+                self.together.push(place);
+            }
+            self.of[place] = TOGETHER;
+        }
+    }
+
+    /// Forgets what hangs together.
+    fn forget(&mut self) {
+        for place in std::mem::take(&mut self.together) {
+            self.of[place] &= !TOGETHER;
+        }
+    }
+}
+
+/// The piece around one of the ends that has lost contact with the other, if any; pieces without bonds do not count. Points found to
+/// hang together are remembered: along a crack one way around its tip will do for all its bonds.
+fn cut_off(body: &Body, bonds: &Bonds, ends: [usize; 2], marks: &mut Marks) -> Option<Vec<usize>> {
+    let mut seen = ends.map(|end| vec![end]);
+    let mut front = seen.clone();
+    let mut is_known = ends.map(|end| marks.of[end] & TOGETHER != 0);
+    [0, 1].into_iter().for_each(|side| marks.of[ends[side]] |= 1 << side);
     loop {
-        if is_known == [true, true] {
-            together.extend(seen.iter().flatten());
+        if is_known == [true; 2] {
+            marks.join(seen);
             return None;
         }
         let side = usize::from(front[1].len() < front[0].len());
+        let (own, far) = (1 << side, 2 >> side);
         let mut next = Vec::new();
         for place in std::mem::take(&mut front[side]) {
             let mut meets = false;
             for (.., other) in bonds.at(body, place) {
-                meets |= seen[1 - side].contains(&other);
-                if seen[side].insert(other) {
-                    is_known[side] |= together.contains(&other);
+                let mark = marks.of[other];
+                meets |= mark & far != 0;
+                if mark & own == 0 {
+                    marks.of[other] |= own;
+                    is_known[side] |= mark & TOGETHER != 0;
+                    seen[side].push(other);
                     next.push(other);
                 }
             }
             if meets {
-                if is_known == [false, false] {
-                    together.clear();
+                if is_known == [false; 2] {
+                    marks.forget();
                 }
-                together.extend(seen.iter().flatten());
+                marks.join(seen);
                 return None;
             }
         }
         if next.is_empty() {
+            seen.iter().flatten().for_each(|&place| marks.of[place] &= TOGETHER);
             let piece = std::mem::take(&mut seen[side]);
             return (piece.len() > 1).then_some(piece);
         }

@@ -260,7 +260,7 @@ fn every_broken_curve_is_refused_with_place_value_and_remedy() {
     for (name, bytes, words) in text.map(|(name, text, words)| (name, text.into_bytes(), words)).chain([picture]) {
         let file = format!("{name}.csv");
         fs::write(folder.path().join(&file), bytes).unwrap();
-        let output = perilife(folder.path(), &format!("rates {file} --specimen panel.toml --out rates.csv"));
+        let output = perilife(folder.path(), &["rates", &*file, "--specimen", "panel.toml", "--out", "rates.csv"]);
         assert_refused(&output, 2, &[&file]);
         assert_refused(&output, 2, &words);
         let (_, stderr) = texts(&output);

@@ -181,7 +181,7 @@ fn many_specimens_take_no_longer_each_than_few() {
     assert!(seconds < 30.0, "{seconds:.1} s");
     // What is to be said of each of them is said of the first hundred.
     assert_eq!(first.warnings.len(), 2 * 101, "{:?}", &first.warnings[..3]);
-    assert_eq!(first.warnings[100], format!("and {} more warnings of this kind", COUNT - 100));
+    assert_eq!(first.warnings[100], format!("readings: and {} more warnings of this kind", COUNT - 100));
     let window = |name: &str| {
         let reason = "why".to_owned();
         let (specimen, [from_cycles, to_cycles]) = (Some(name.to_owned()), [Some(0.0), Some(500.0)]);
@@ -234,7 +234,7 @@ fn typing_errors_are_named() {
     assert_eq!(errors(&read_with(&[])), 0);
     for (reading, by) in [(12, 10.0), (12, -1.0), (25, 3.0), (29, -2.0)] {
         let measured = read_with(&[(reading, by)]);
-        let line = format!("typed.csv: line {}: ", reading + 2);
+        let line = format!("readings: typed.csv: line {}: ", reading + 2);
         assert!(measured.warnings.iter().any(|words| words.starts_with(&line)), "{reading} {by}: {:?}", measured.warnings);
         assert_eq!((errors(&measured), measured.curves[0].cycles.len()), (1, 30), "{reading} {by}");
     }

@@ -159,7 +159,7 @@ fn an_exponent_at_an_end_of_its_range_is_no_fit() {
     let fit = fit_to(&[&good[..], &[odd]].concat(), None, &paris_model()).unwrap();
     // Its rates lie on no line either.
     assert!(fit.warnings.iter().all(|line| line.contains("specimen odd")), "{:?}", fit.warnings);
-    assert!(fit.warnings.iter().any(|line| line.starts_with("specimen odd: best fit")), "{:?}", fit.warnings);
+    assert!(fit.warnings.iter().any(|line| line.starts_with("exponent: specimen odd: best fit")), "{:?}", fit.warnings);
 }
 
 #[test]

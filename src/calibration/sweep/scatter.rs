@@ -20,10 +20,9 @@ use super::distribution::normal_quantile;
 use crate::record::SpecimenRecord;
 use perilife_base::error::{Error, Result, fail_if, input, input_missing};
 use perilife_base::input::Folder;
-use perilife_base::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::record::FittedRecord;
 use perilife_growth::rate_constant::rate_constant_slope;
-use perilife_plate::material::Plane;
 use perilife_points::bond_law::Kernel;
 
 /// Fewest specimens whose covariance is taken for that of all.
@@ -150,11 +149,7 @@ pub fn slope(record: &FittedRecord) -> Result<f64> {
     if record.rate_constant.is_none() {
         return Ok(pivot.ln());
     }
-    let modulus = record.youngs_modulus_gpa * GPA;
-    let modulus = match Plane::from_str(&record.plane)? {
-        Plane::Stress => modulus,
-        Plane::Strain => modulus / (1.0 - record.poisson_ratio.powi(2)),
-    };
+    let modulus = record.plane_modulus()?;
     Ok((pivot * MPA_SQRT_M / (modulus * (record.horizon_mm * MM).sqrt())).ln() + beta_slope(record)?)
 }
 

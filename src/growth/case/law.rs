@@ -129,15 +129,6 @@ fn bonds_of(record: &FittedRecord) -> FatigueLaw {
     FatigueLaw { a: record.a, p: record.p, horizon: record.horizon_mm * MM }
 }
 
-/// E' = E (plane stress) or E/(1-ν²) (plane strain) of the calibration, Pa.
-fn recorded_modulus(record: &FittedRecord) -> Result<f64> {
-    let e = record.youngs_modulus_gpa * GPA;
-    Ok(match Plane::from_str(&record.plane)? {
-        Plane::Stress => e,
-        Plane::Strain => e / (1.0 - record.poisson_ratio.powi(2)),
-    })
-}
-
 /// Warnings of a fitted law used in this case.
 pub(super) fn record_lines(case: &Case, record: &FittedRecord) -> Result<Vec<String>> {
     let mut lines = Vec::new();
@@ -163,7 +154,7 @@ fn material_line(material: &Material, record: &FittedRecord, bonds: bool) -> Res
     if same {
         return Ok(None);
     }
-    let factor = (material.plane_modulus() / recorded_modulus(record)?).powf(record.p);
+    let factor = (material.plane_modulus() / record.plane_modulus()?).powf(record.p);
     let bonds = if bonds { format!(", A times (E'2/E'1)^p = {factor:.4}") } else { String::new() };
     Ok(Some(format!(
         "law: growth law of {} (E {} GPa, ν {}, plane {}) used at E {e} GPa, ν {nu}, plane {}: da/dN at equal ΔK is kept{bonds}",
@@ -242,7 +233,7 @@ impl Case {
         match &self.law {
             LawSource::Inline(law) => Ok(law.at_horizon(horizon)),
             LawSource::Fitted(record) => {
-                let modulus = (self.material.plane_modulus() / recorded_modulus(record)?).powf(record.p);
+                let modulus = (self.material.plane_modulus() / record.plane_modulus()?).powf(record.p);
                 let range = 1.0 - record.stress_ratio.max(0.0);
                 let walker = range.powf(record.p * (1.0 - self.fatigue.walker_gamma));
                 let law = bonds_of(record);
@@ -307,7 +298,7 @@ fn shape(record: &FittedRecord) -> Result<Option<Shape>> {
 /// C and m of a record over the K that its curve is over.
 fn fitted_paris(record: &FittedRecord) -> Result<ParisLaw> {
     match record.rate_constant {
-        Some(beta) => Ok(ParisLaw::of_bonds(&bonds_of(record), beta, recorded_modulus(record)?)),
+        Some(beta) => Ok(ParisLaw::of_bonds(&bonds_of(record), beta, record.plane_modulus()?)),
         None => Ok(ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE, m: record.paris_m }),
     }
 }

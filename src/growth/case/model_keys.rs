@@ -127,20 +127,21 @@ pub fn usual_nodes(specimen: &Specimen) -> ElementFreeSettings {
     nodes_for(specimen, TOLERANCE_PERCENT, basis)
 }
 
-/// Nodes by which K of a case on points is judged, those for the least error that can be asked for; of one on nodes that were made finer
-/// `refined` times: with the radius of influence of those and as fine, finer still beside a run with such a radius.
-pub fn finer_nodes(case: &Case, refined: [u32; 2]) -> ElementFreeSettings {
+/// Nodes by which K of a case is judged, made finer `refined` times, where that is known by itself: for the least error that can be asked for;
+/// of a case on nodes with the radius of influence of those and as fine, finer still beside a run with such a radius.
+pub fn finer_nodes(case: &Case, refined: Option<[u32; 2]>) -> ElementFreeSettings {
     let mut nodes = nodes_for(&case.specimen, TOLERANCE_LEAST, BasisKind::Linear);
-    let Model::Nodes(own) = case.model else { return nodes };
-    let of_own = own.resolution;
-    let is_as_fine = own.is_given || of_own.support >= nodes.resolution.support;
-    let times = if is_as_fine { FINER } else { 1.0 };
-    nodes.resolution.far = nodes.resolution.far.min(of_own.far) / times;
-    nodes.resolution.hold *= times;
-    nodes.resolution.reach = REACH_OF_FINER.max(of_own.reach);
-    nodes.resolution.support = nodes.resolution.support.max(of_own.support);
-    nodes.resolution = nodes.resolution.finer(refined.map(|times| REFINED.powi(times as i32)));
-    nodes.is_final = true;
+    if let Model::Nodes(own) = case.model {
+        let of_own = own.resolution;
+        let is_as_fine = own.is_given || of_own.support >= nodes.resolution.support;
+        let times = if is_as_fine { FINER } else { 1.0 };
+        nodes.resolution.far = nodes.resolution.far.min(of_own.far) / times;
+        nodes.resolution.hold *= times;
+        nodes.resolution.reach = REACH_OF_FINER.max(of_own.reach);
+        nodes.resolution.support = nodes.resolution.support.max(of_own.support);
+    }
+    nodes.resolution = nodes.resolution.finer(refined.unwrap_or_default().map(|times| REFINED.powi(times as i32)));
+    nodes.is_final = refined.is_some();
     nodes
 }
 

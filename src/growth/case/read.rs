@@ -336,7 +336,7 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
         }
     }
     lines.extend(compression_line(case));
-    lines.extend(boundaries::lines(case));
+    lines.extend(boundaries::lines(case).into_iter().map(|line| format!("tested range: {line}")));
     if case.spends_bond_life() {
         lines.extend(coarse_line(case));
     }
@@ -389,5 +389,5 @@ fn coarse_line(case: &Case) -> Option<String> {
         _ if ratio < 2.9 => "up to 15 % off",
         _ => return None,
     };
-    Some(format!("horizon_ratio {ratio} is too small: with the same A the life is {error}; use 3 or more"))
+    Some(format!("bonds: horizon_ratio {ratio} is too small: with the same A the life is {error}; use 3 or more"))
 }

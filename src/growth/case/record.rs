@@ -7,9 +7,11 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_base::error::Result;
+use perilife_base::units::{GPA, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_laws::curve::{CurveLaw, ROWS};
 use perilife_measured::LeaveOut;
+use perilife_plate::material::Material;
 
 perilife_base::kinds! {
     /// Laws that a fit to lives writes.
@@ -87,6 +89,14 @@ pub struct FittedRecord {
     /// Scatter of the specimens about a common law; what it holds is the calibration's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub population: Option<Table>,
+}
+
+impl FittedRecord {
+    /// E' of the plate that it was fitted on, Pa.
+    pub fn plane_modulus(&self) -> Result<f64> {
+        let modulus = self.youngs_modulus_gpa * GPA;
+        Ok(Material::elastic(modulus, self.poisson_ratio, self.plane.parse()?).plane_modulus())
+    }
 }
 
 /// Law of a record of before, which names none.

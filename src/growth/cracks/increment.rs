@@ -228,7 +228,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let kinks = |tip: &Tip| tip.begins_kink() && !tip.is_at_rest(fastest);
         let is_kinking = self.scales.step.first_of_kink.is_finite() && self.state.tips.iter().any(kinks);
         if has_ended || is_kinking || self.is_at_corner() {
-            self.state.step = self.first_step();
+            self.state.step = self.first_step(self.last().cycles + cycles);
         } else if growth > 0.0 && !is_over {
             let all = self.last().cycles + cycles;
             self.state.step = self.next_step(growth, curvature_share, cycles / all);

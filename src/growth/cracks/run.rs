@@ -107,7 +107,7 @@ impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
             let problem = format!("{name}: no stress intensity can be read at the crack tip at {place}");
             return Err(Error::Mechanics(format!("{problem}; reduce model.spacing_mm")));
         }
-        self.state.step = self.first_step();
+        self.state.step = self.first_step(0.0);
         self.plate.update(&self.state);
         self.curve = vec![self.row(0.0, self.work(), 0)];
         self.rows_at_rebuild = 1;

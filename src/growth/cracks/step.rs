@@ -87,15 +87,18 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         most.min(in_turn.max(scales.turn_unless))
     }
 
-    /// Step of the lead in the first increment after a start, a joint or a kink, m.
-    pub(super) fn first_step(&self) -> f64 {
+    /// Step of the lead in the first increment after a start, a joint or a kink, m, after so many cycles: where it takes few of them,
+    /// it errs by little.
+    pub(super) fn first_step(&self, all: f64) -> f64 {
+        let scales = &self.scales.step;
         let Some(fastest) = self.fastest().map(|lead| self.state.tips[lead].rate) else { return 0.0 };
         let of_tip = |(index, tip): (usize, &Tip)| {
-            let most = self.limit(index) * self.scales.step.slack(fastest, tip) * fastest / tip.rate;
-            if tip.begins_kink() { most } else { self.scales.step.first_share * most }
+            let most = self.limit(index) * scales.slack(fastest, tip) * fastest / tip.rate;
+            let share = scales.first_share * (scales.error_counts_from * all * fastest / most).max(1.0);
+            if tip.begins_kink() { most } else { share.min(1.0) * most }
         };
         let growing = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.is_growing());
-        growing.map(of_tip).fold(self.scales.step.first, f64::min)
+        growing.map(of_tip).fold(scales.first, f64::min)
     }
 
     /// Step of the lead after one of length `grown`, m, that took the share `of_all` of all cycles so far and in which the parabola added the

@@ -2,7 +2,7 @@
 //!
 //! A life is `N = ∫ da / r(K)`, so that an error of K at the crack of a row, `δ = ln[r(K of finer nodes) / r(K of the run)]`, makes it wrong
 //! by `δN = -∫ δ dN`. That is evaluated at some rows, their shares of the cycles as weights: at each of a run on nodes by one equilibrium, on nodes as
-//! fine as those of the run ask for; beside a run on points nodes refine themselves. What two rungs of nodes share, K of the finer ones and the lengths of steps, is added as a bound. The same for the way of a crack: the angles by which directions differ, over its growth.
+//! fine as those of the run ask for; beside a run on points nodes refine themselves at the first of these rows. What two rungs of nodes share, K of the finer ones and the lengths of steps, is added as a bound. The same for the way of a crack: the angles by which directions differ, over its growth.
 
 use super::Prediction;
 use super::laws::growth_law;
@@ -10,9 +10,10 @@ use super::moment::{Moment, SHOWN_AT, grown, rows_before_meeting};
 use super::part_through::PartThroughLife;
 use crate::case::{Case, Engine, Model, finer_nodes};
 use crate::cracks::steering::{equivalent_factor, kink_angle};
-use crate::cracks::{InitialTips, initial_tips_on};
+use crate::cracks::{CrackedPlate, InitialTips, initial_tips_on};
 use crate::nodes::NodePlate;
 use crate::record::{CurvePoint, StopReason, TipRecord};
+use perilife_base::parallel::in_pool;
 use perilife_base::units::MM;
 use perilife_laws::growth_law::GrowthLaw;
 use perilife_nodes::resolution::ElementFreeSettings;
@@ -24,8 +25,8 @@ use rayon::prelude::*;
 /// Shares of the cycles at which K is solved for on finer nodes, of a run on nodes: the bounds of 28 plates are as wide as with 0, 0.4 and 0.8, and
 /// none of them errs by more. With 0.2 and 0.75 that of `double_edge_notched` at 5 % is 1.62 where 1.61 is true.
 const SHARES_OF_NODES: [f64; 2] = [0.3, 0.8];
-/// Of a run on points, beside which nodes cost little.
-const SHARES_OF_POINTS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 0.95];
+/// Of a run on points: more change the bound little.
+const SHARES_OF_POINTS: [f64; 3] = [0.0, 0.4, 0.8];
 /// Factor on the differences of a run on points and on those by loads: between these rows they may be larger.
 const BETWEEN: f64 = 2.0;
 /// Share of the scatter of the differences of a run on nodes that is added to their mean: between these rows they are others.
@@ -175,10 +176,13 @@ fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, sha
     };
     let mut asked: Vec<usize> = shares.iter().map(|share| nearest(*share)).collect();
     asked.dedup();
-    let finer = finer_nodes(case, prediction.figures.refined);
-    let at_row = |&row: &usize| Difference::at(case, finer, rows, row, &rates);
-    let (found, moments): (Vec<(f64, Difference)>, Vec<Moment>) =
-        asked.par_iter().map(at_row).collect::<Result<Vec<_>, String>>()?.into_iter().unzip();
+    let at_row = |row: usize, refined: Option<[u32; 2]>| Difference::at(case, finer_nodes(case, refined), rows, row, &rates);
+    let of_run = (case.engine() == Engine::Nodes).then_some(prediction.figures.refined);
+    let (first, others) = asked.split_at(usize::from(of_run.is_none()));
+    let mut solved = first.iter().map(|&row| in_pool(|| at_row(row, None))).collect::<Result<Vec<_>, String>>()?;
+    let refined = of_run.or_else(|| solved.first().map(|(_, moment)| moment.plate.statistics().refined));
+    solved.extend(others.par_iter().map(|&row| at_row(row, refined)).collect::<Result<Vec<_>, String>>()?);
+    let (found, moments): (Vec<(f64, Difference)>, Vec<Moment>) = solved.into_iter().unzip();
     // Every row stands for the cycles nearest to it.
     let mut largest_exponent: f64 = 0.0;
     let [mut of_life, mut mean, mut of_loads, mut of_angle] = [0.0; 4];

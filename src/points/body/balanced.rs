@@ -59,7 +59,7 @@ pub(super) fn balance(body: &mut Body, rim: &[Facet], sharing: &Sharing) -> Resu
     let equations = Equations::new(body, members, &areas, |_| 1.0, |place| near_rim[place]);
     let (links, sought) = equations.sought(body, &body.multiplier);
     // Inside the plate all bonds are there with multiplier 1.
-    let missing = equations.missing(body, &gains, |_| 1.0, |bond| body.multiplier[bond]);
+    let missing = equations.missing(body, &gains, |_| 1.0, |bond, _| body.multiplier[bond]);
     let change = Problem::new(&gains, links, missing).solve("this outline")?;
     for (bond, change) in sought.into_iter().zip(change) {
         body.multiplier[bond] = settled(1.0 + change);
@@ -115,10 +115,13 @@ impl Equations {
         [link.from, link.to].into_iter().any(|end| self.share[end as usize] == 0.0)
     }
 
+    fn may_change(&self, link: &Link) -> bool {
+        [link.from, link.to].into_iter().any(|end| self.changes[end as usize])
+    }
+
     /// Bonds whose multipliers are sought.
     fn sought(&self, body: &Body, now: &[f32]) -> (Vec<Link>, Vec<usize>) {
-        let changes = |link: &Link| [link.from, link.to].into_iter().any(|end| self.changes[end as usize]);
-        self.bonds(body, now).filter(|(link, _)| !self.is_of_core(link) && changes(link)).unzip()
+        self.bonds(body, now).filter(|(link, _)| !self.is_of_core(link) && self.may_change(link)).unzip()
     }
 
     /// What is asked of the members, and what bonds leave over that carry by another multiplier than that of the `whole`.
@@ -127,12 +130,14 @@ impl Equations {
         body: &Body,
         gains: &[BondGain],
         whole: impl Fn(usize) -> f32,
-        multiplier: impl Fn(usize) -> f32,
+        multiplier: impl Fn(usize, Option<Link>) -> f32,
     ) -> Vec<Gain> {
         let of_member = |(i, &place): (usize, &usize)| {
             let (mut left, mut kept): (Gain, Gain) = (asked(self.areas[i]), asked([0.0; 2]));
-            for (k, sign, bond, _) in body.around(place) {
-                let [whole, carried] = [whole(bond), multiplier(bond)].map(f64::from);
+            for (k, sign, bond, other) in body.around(place) {
+                let to = self.number[other];
+                let link = (to != u32::MAX).then_some(Link { from: i as u32, to, k });
+                let [whole, carried] = [whole(bond), multiplier(bond, link)].map(f64::from);
                 let (sum, change) = if carried == 0.0 { (&mut left, whole) } else { (&mut kept, carried - whole) };
                 if change != 0.0 {
                     sum.iter_mut().zip(gains[k].at(sign)).for_each(|(l, g)| *l += change * g);

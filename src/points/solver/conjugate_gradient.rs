@@ -22,15 +22,11 @@ const ITERATIONS_MAX: usize = 400;
 /// iterations that is asked.
 const LOST_STIFFNESS: f64 = 1e3;
 const ITERATIONS_PER_LOOK: usize = 20;
-/// Iterations of all solves beyond those of a fresh hierarchy after which it is rebuilt: to build it takes as long.
-const ITERATIONS_OF_BUILDING: usize = 12;
 
-/// Multigrid-preconditioned conjugate gradients with the hierarchy kept between solves.
+/// Multigrid-preconditioned conjugate gradients. The hierarchy is kept between solves and takes in what changes: one built anew needs as many
+/// iterations.
 pub struct MultigridSolver<const N: usize> {
     multigrid: Multigrid<N>,
-    fresh_iterations: Option<usize>,
-    /// Iterations beyond these since the hierarchy was built.
-    excess: usize,
     /// Ends of bonds that changed since the hierarchy took them in.
     changed: Vec<usize>,
     r: Vec<f64>,
@@ -44,13 +40,7 @@ impl<const N: usize> MultigridSolver<N> {
         let zeros = || product.layout().zeros();
         let multigrid = Multigrid::new(&Fine { body, bonds, product });
         let (r, p, q) = (zeros(), zeros(), zeros());
-        MultigridSolver { multigrid, fresh_iterations: None, excess: 0, changed: Vec::new(), r, p, q }
-    }
-
-    /// A new hierarchy.
-    fn rebuild(&mut self, System { body, bonds, product, .. }: System<'_, N>) {
-        self.multigrid = Multigrid::new(&Fine { body, bonds, product });
-        (self.fresh_iterations, self.excess, self.changed) = (None, 0, Vec::new());
+        MultigridSolver { multigrid, changed: Vec::new(), r, p, q }
     }
 
     /// Told which bonds changed since the last solve.
@@ -60,14 +50,10 @@ impl<const N: usize> MultigridSolver<N> {
         }
     }
 
-    /// Solves to a residual over load. A rougher solve than that of the system makes do with the hierarchy that is there.
+    /// Solves to a residual over load.
     /// Errors: [`Error::LossOfStiffness`]; the iteration does not converge.
-    pub(super) fn solve(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-        let System { body, bonds, product, f, .. } = system;
-        let is_rough = tolerance > system.tolerance;
-        if self.excess > ITERATIONS_OF_BUILDING && !is_rough {
-            self.rebuild(system);
-        }
+    pub(super) fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+        let System { body, bonds, tolerance, product, f } = system;
         if !self.changed.is_empty() {
             let mut changed = std::mem::take(&mut self.changed);
             changed.sort_unstable();
@@ -75,29 +61,26 @@ impl<const N: usize> MultigridSolver<N> {
             self.multigrid.refresh(&Fine { body, bonds, product }, &changed);
         }
         let work_before = dot(product.layout(), f, u);
-        let mut spent = self.iterate(tolerance, system, u, work_before)?;
+        let mut spent = self.iterate(system, u, work_before)?;
         if spent.is_none() {
-            // The hierarchy belongs to an older crack, or to a plate that is nearly a mechanism: once more with a new one, from rest.
-            self.rebuild(system);
+            // The plate is nearly a mechanism, or its spectrum is no longer that of the smoothers: once more with new ones, from rest.
+            self.multigrid = Multigrid::new(&Fine { body, bonds, product });
             self.multigrid.depth = Depth::Cautious;
             u.fill(0.0);
-            spent = self.iterate(tolerance, system, u, work_before)?;
+            spent = self.iterate(system, u, work_before)?;
         }
         let iterations = spent.ok_or_else(|| {
             Error::Mechanics(format!(
                 "the equilibrium solver did not converge to {tolerance:e} within {ITERATIONS_MAX} iterations"
             ))
         })?;
-        if !is_rough {
-            self.excess += iterations.saturating_sub(*self.fresh_iterations.get_or_insert(iterations));
-        }
-        tracing::debug!(iterations, excess = self.excess, "equilibrium");
+        tracing::debug!(iterations, "equilibrium");
         Ok(Solved { iterations, work: dot(product.layout(), f, u) })
     }
 
     /// Iterations to a residual over load; `None` where it is not reached. `work_before` is the work of the loads before bonds broke.
-    fn iterate(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64], work_before: f64) -> Result<Option<usize>> {
-        let System { body, bonds, product, f, .. } = system;
+    fn iterate(&mut self, system: System<'_, N>, u: &mut [f64], work_before: f64) -> Result<Option<usize>> {
+        let System { body, bonds, tolerance, product, f } = system;
         let layout = *product.layout();
         let target = tolerance * dot(&layout, f, f).sqrt();
         self.r.copy_from_slice(f);

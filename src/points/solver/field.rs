@@ -10,8 +10,8 @@ use crate::body::Body;
 use crate::body::lattice::{LANES, Lattice};
 use crate::body::mirror::{Line, signs};
 
-/// Places of a task, about: on fewer than some thousands a second thread costs what it gains.
-const PLACES_PER_TASK: usize = 1 << 14;
+/// Places of a task, about: from some thousands on a second thread gains more than it costs.
+const PLACES_PER_TASK: usize = 1 << 12;
 
 /// Layout of a vector with `unknowns` components a place over a padded lattice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,10 +73,10 @@ impl Layout {
         vec![0.0; self.len()]
     }
 
-    /// Rows that one task takes: enough work that handing it out does not count, the same for any number of threads.
+    /// Rows that one task takes: enough work that handing it out does not count, tasks alike, the same for any number of threads.
     #[inline]
     pub fn rows_per_task(&self) -> usize {
-        PLACES_PER_TASK.div_ceil(self.stride)
+        self.rows.div_ceil((self.rows * self.stride).div_ceil(PLACES_PER_TASK).max(1)).max(1)
     }
 
     /// Columns and rows that hold points.

@@ -75,14 +75,24 @@ impl SymmetricPart {
         let unknowns = whole.stencil.unknowns;
         let (from, to) = (Layout::of(&self.part.body.lattice, unknowns), Layout::of(&whole.lattice, unknowns));
         target.resize(to.len(), 0.0);
-        for &place in places.unwrap_or(&self.part.body.points) {
-            let here = from.index(place as usize);
-            for (image, flips) in self.part.images(whole, place as usize) {
+        let mut copy = |place: usize, columns: usize| {
+            let here = from.index(place);
+            for (image, flips) in self.part.images(whole, place) {
                 let there = to.index(image);
                 for (c, sign) in signs(flips).into_iter().take(unknowns).enumerate() {
-                    target[there + c * to.stride] = sign * source[here + c * from.stride];
+                    let (source, there) = (source[here + c * from.stride..][..columns].iter(), there + c * to.stride);
+                    if flips[0] {
+                        target[there + 1 - columns..=there].iter_mut().rev().zip(source).for_each(|(t, s)| *t = sign * s);
+                    } else {
+                        target[there..there + columns].iter_mut().zip(source).for_each(|(t, s)| *t = sign * s);
+                    }
                 }
             }
+        };
+        let lattice = &self.part.body.lattice;
+        match places {
+            Some(places) => places.iter().for_each(|&place| copy(place as usize, 1)),
+            None => (0..lattice.rows).for_each(|row| copy(lattice.place(0, row), lattice.columns)),
         }
     }
 

@@ -22,15 +22,11 @@ use conjugate_gradient::TOLERANCE;
 use mirrored::SymmetricPart;
 pub use mirrored::Symmetry;
 use perilife_base::error::Result;
+use perilife_base::parallel::in_pool;
 use sides::{Sides, balance};
 use spring::GapSpring;
 pub use system::{Focus, SolverKind, SolverUsed};
 use system::{Sought, Standing};
-
-/// Does work on a thread of the pool: a parallel loop started from outside would wait for threads to be woken every time.
-fn in_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
-    rayon::scope(|_| work())
-}
 
 /// Keeps a body in equilibrium with its load while bonds break.
 pub struct Equilibrium {

@@ -202,5 +202,5 @@ fn zero_energy_line(scene: &Scene) -> Option<String> {
         passed("correspondence, silling: global").map(|(end, bound)| (end, bound, "error of displacements")).or_else(|| {
             passed("correspondence, silling: nodal").map(|(end, bound)| (end, bound, "scatter of strain between points"))
         })?;
-    Some(format!("zero energy: model.zero_energy_factor {factor}: beyond {end} {what} above {bound} %; remove it"))
+    Some(format!("tested range: model.zero_energy_factor {factor}: beyond {end} {what} above {bound} %; remove it"))
 }

@@ -225,7 +225,7 @@ fn addresses_are_looked_up() {
     let dir = tempdir().unwrap();
     let data = dir.path().join("d").display().to_string();
     for address in [":0", "127.0.0.1", "127.0.0.1:99999", "no such name:80", "localhost:http"] {
-        let output = perilife(dir.path(), &format!("serve --listen {address} --data {data}"));
+        let output = perilife(dir.path(), &["serve", "--listen", address, "--data", &data]);
         let (code, stderr) = (output.status.code(), texts(&output).1);
         assert!(code == Some(2) && stderr.contains("127.0.0.1:8080") && stderr.contains("localhost:8080"), "{address}: {stderr}");
     }

@@ -217,7 +217,7 @@ fn without_count(table: &mut Table) -> Result<Option<String>> {
     }
     if first == follow && first > 2.0 * most {
         table.rows.remove(0);
-        return Ok(Some(format!("spectrum: {}: line {line}, {first}, counts the values that follow", table.file.display())));
+        return Ok(Some(format!("spectrum: {}: line {line}, {first}, is the number of values below", table.file.display())));
     }
     let is_named = table.header_line > 0 && WORDS.role(&table.names[0]).is_some();
     let is_near = (0.5 * follow..=2.0 * follow).contains(&first) && first > 2.0 * most;

@@ -12,7 +12,7 @@
 
 use rayon::prelude::*;
 
-use super::least_squares::{BOUNDS, Problem};
+use super::least_squares::{BOUNDS, Link, Problem};
 use super::{Equations, areas, gains, load_rows};
 use crate::body::pre_crack::{as_cut, faces, places_near};
 use crate::body::sharing::linear_shares;
@@ -54,23 +54,24 @@ pub fn multipliers(
     let beside = beside(body, now, lines, tips, ends, range);
     // What is sought counts as a change of the body's own multiplier.
     let (links, sought) = beside.sought(body, now);
-    // Those at a tip may not have been there when the crack was shorter.
-    let cores = beside.bonds(body, now).filter(|(link, _)| beside.is_of_core(link)).map(|(_, bond)| bond);
-    let all: Vec<usize> = sought.iter().copied().chain(cores).collect();
-    let mut new = now.to_vec();
-    all.iter().for_each(|&bond| new[bond] = body.multiplier[bond]);
     let gains = gains(body);
-    let missing = beside.missing(body, &gains, |bond| body.multiplier[bond], |bond| new[bond]);
+    let multiplier = |bond: usize, link: Option<Link>| {
+        let is_found_anew = link.is_some_and(|link| beside.is_of_core(&link) || beside.may_change(&link));
+        if now[bond] > 0.0 && is_found_anew { body.multiplier[bond] } else { now[bond] }
+    };
+    let missing = beside.missing(body, &gains, |bond| body.multiplier[bond], multiplier);
     let bounds = BOUNDS.map(|bound| bound - 1.0);
     let changes = Problem::new(&gains, links, missing).solve_to(&SOFTNESS, bounds).unwrap_or_else(|| vec![0.0; sought.len()]);
-    for (bond, change) in sought.into_iter().zip(changes) {
+    let found = |(bond, change): (usize, f64)| {
         let whole = f64::from(body.multiplier[bond]);
-        if change.abs() >= ROUND_OFF {
-            new[bond] = (whole + change).max(BOUNDS[0] * whole) as f32;
-        }
-    }
-    let differing = all.into_iter().filter(|&bond| new[bond] != now[bond]);
-    let mut changed: Vec<(Bond, f32)> = differing.map(|bond| (bond as Bond, new[bond])).collect();
+        let new = if change.abs() < ROUND_OFF { whole } else { (whole + change).max(BOUNDS[0] * whole) };
+        (bond, new as f32)
+    };
+    // Those at a tip may not have been there when the crack was shorter.
+    let cores =
+        beside.bonds(body, now).filter(|(link, _)| beside.is_of_core(link)).map(|(_, bond)| (bond, body.multiplier[bond]));
+    let new = sought.into_iter().zip(changes).map(found).chain(cores).filter(|&(bond, new)| new != now[bond]);
+    let mut changed: Vec<(Bond, f32)> = new.map(|(bond, new)| (bond as Bond, new)).collect();
     changed.sort_unstable_by_key(|(bond, _)| *bond);
     changed
 }
@@ -85,6 +86,7 @@ fn beside(body: &Body, now: &[f32], lines: &[CrackLine], tips: &[Point], ends: &
         let reach = followed + 3.0 * horizon;
         range == FlankRange::All || ends.iter().any(|end| distance_to_segment(*end, *a, *b) < reach)
     };
+    let is_facet_near = |facet: &Facet| is_near(&[facet.at; 2]);
     // As the bonds see them.
     let near_pieces = lines.iter().flat_map(CrackLine::pieces).filter(is_near);
     let pieces: Vec<[Point; 2]> = near_pieces.map(|piece| as_cut(body, piece)).collect();
@@ -102,7 +104,8 @@ fn beside(body: &Body, now: &[f32], lines: &[CrackLine], tips: &[Point], ends: &
     members.iter().filter(|&place| misses(place)).for_each(|&place| missing[place] = true);
     let sides = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)].map(|(dx, dy)| body.lattice.step(dx, dy));
     let changes = |place: usize| sides.iter().any(|&step| missing[place.wrapping_add_signed(step)]);
-    let facets: Vec<Facet> = pieces.iter().flat_map(|&piece| faces(piece, spacing / PIECES_PER_SPACING)).collect();
+    let facets: Vec<Facet> =
+        pieces.iter().flat_map(|&piece| faces(piece, spacing / PIECES_PER_SPACING)).filter(is_facet_near).collect();
     let shares: Vec<_> =
         facets.par_iter().with_min_len(16).map(|facet| shares(body, facet, &pieces).unwrap_or_default()).collect();
     Equations::new(body, members, &areas(body, facets.iter().zip(shares)), share, changes)

@@ -107,7 +107,7 @@ impl<'a> Problem<'a> {
         Some(changes)
     }
 
-    /// Points that are inside and all their links, by parts that no link joins.
+    /// Points that are inside and have links, and all of these, by parts that no link joins.
     fn parts(&self, inside: Vec<bool>) -> Vec<(Vec<u32>, Vec<u32>)> {
         // Each point's part by the smallest number that its links lead to.
         let mut part: Vec<u32> = (0..inside.len() as u32).collect();
@@ -131,7 +131,7 @@ impl<'a> Problem<'a> {
                 parts.entry(root(&mut part, end)).or_default().1.push(index as u32);
             }
         }
-        parts.into_values().collect()
+        parts.into_values().filter(|(_, links)| !links.is_empty()).collect()
     }
 }
 

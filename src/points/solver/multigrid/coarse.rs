@@ -201,7 +201,8 @@ fn scale<const N: usize>(diagonal: &Block<N>) -> f64 {
 /// Rows of Pᵀ A P at some coarse places, best in the order of the level: a fine place serves up to four of them, and in parts of a few
 /// hundred its row of A P is found once.
 fn coarse_rows<const N: usize>(transfer: &Transfer<N>, finer: &impl Stiffness<N>, places: &[[usize; 2]]) -> Vec<CoarseRow<N>> {
-    const TOGETHER: usize = 256;
+    // Of the few places that change beside a crack every thread has its share.
+    let together = places.len().div_ceil(2 * rayon::current_num_threads()).clamp(16, 256);
     let size = finer.layout().size();
     let half = transfer.factor as isize - 1;
     // Fine columns (axis 0) or rows that use a coarse one.
@@ -236,7 +237,7 @@ fn coarse_rows<const N: usize>(transfer: &Transfer<N>, finer: &impl Stiffness<N>
         };
         places.iter().zip(&around).map(&mut row_of).collect::<Vec<CoarseRow<N>>>()
     };
-    places.par_chunks(TOGETHER).flat_map_iter(of_part).collect()
+    places.par_chunks(together).flat_map_iter(of_part).collect()
 }
 
 /// Row of A P at a fine place: blocks by coarse places around the first of its parents.

@@ -7,6 +7,7 @@ use super::{Block, Stiffness};
 use crate::body::Body;
 use crate::body::lattice::LANES;
 use crate::body::mirror::{Flips, signs};
+use crate::bond_law::stencil::StencilBond;
 use crate::state::Bonds;
 
 /// Common neighbours that join two points whose own bond is broken: around a tip fewer reach across the crack.
@@ -94,12 +95,18 @@ impl<const N: usize> Stiffness<N> for Fine<'_, N> {
         let place = body.lattice.place(column, row);
         let mut diagonal = [[0.0; N]; N];
         for (k, sign, bond, other) in self.bonds.at(body, place) {
-            let (own, off) = self.product.bond_blocks(k, sign, f64::from(self.bonds.multiplier[bond]));
+            let (own, mut off) = self.product.bond_blocks(k, sign, f64::from(self.bonds.multiplier[bond]));
+            let StencilBond { dx, dy, .. } = body.stencil.bonds[k];
+            let mut step = [dx, dy].map(|way| sign as isize * way as isize);
             let (other, flips) = body.behind(other);
-            let (seat, mut off) = (body.lattice.column_row(other), mirrored(off, flips));
+            if flips != [false; 2] {
+                let seat = body.lattice.column_row(other);
+                step = [seat.0 as isize - column as isize, seat.1 as isize - row as isize];
+                off = mirrored(off, flips);
+            }
             self.clear(&mut off, place, other);
             add(&mut diagonal, &own);
-            visit([seat.0 as isize - column as isize, seat.1 as isize - row as isize], &off);
+            visit(step, &off);
         }
         self.clear(&mut diagonal, place, place);
         visit([0, 0], &diagonal);

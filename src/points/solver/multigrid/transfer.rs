@@ -38,6 +38,8 @@ pub struct Transfer<const N: usize> {
     pub coarse: Layout,
     /// Lower coarse column of every fine column, and the share of the way to the next.
     lower: Vec<(u32, f32)>,
+    /// The same of every column and row.
+    seats: [Vec<(usize, f64)>; 2],
     /// Weights of the chunks of a fine row; common are bilinear ones.
     own: Chunked<[Weights; LANES]>,
 }
@@ -70,9 +72,13 @@ impl<const N: usize> Transfer<N> {
         let coarse = Layout { unknowns: N, stride, rows: rows + 2 * padding, padding, columns };
         let place = |column: usize| column + offset[0];
         let lower = (0..fine.columns).map(|c| ((place(c) / factor) as u32, (place(c) % factor) as f32 / factor as f32)).collect();
+        let seats = [0, 1].map(|axis| {
+            let seat = |at: usize| ((at + offset[axis]) / factor, ((at + offset[axis]) % factor) as f64 / factor as f64);
+            (0..fine.size()[axis]).map(seat).collect()
+        });
         let [columns, rows] = fine.size();
         let own = Chunked::new([columns.div_ceil(LANES), rows], |_, _| true, |_, _| Slot::Empty);
-        let mut transfer = Transfer { factor, unit, offset, fine, coarse, lower, own };
+        let mut transfer = Transfer { factor, unit, offset, fine, coarse, lower, seats, own };
         let find = |row: usize, chunk: usize| transfer.weights_of_chunk(row, chunk, finer);
         transfer.own = Chunked::new([columns.div_ceil(LANES), rows], |row, chunk| finer.is_common(row, chunk), find);
         transfer
@@ -202,8 +208,8 @@ impl<const N: usize> Transfer<N> {
 
     /// Lower left coarse place of a fine place, and the fraction of the way to the next.
     fn corners(&self, place: [usize; 2]) -> ([usize; 2], [f64; 2]) {
-        let at = [place[0] + self.offset[0], place[1] + self.offset[1]];
-        (at.map(|p| p / self.factor), at.map(|p| (p % self.factor) as f64 / self.factor as f64))
+        let [x, y] = [0, 1].map(|axis| self.seats[axis][place[axis]]);
+        ([x.0, y.0], [x.1, y.1])
     }
 
     /// Fine column and row (which may lie outside) of a coarse place.

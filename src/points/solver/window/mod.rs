@@ -113,10 +113,10 @@ impl<const N: usize> Solver<N> {
 
     /// By iteration or, where that does not manage or is not asked for, by factorisation: of a part that hangs on a few bonds and is nearly
     /// a mechanism iteration breaks down. A plate that loses its stiffness is beyond both, and held sums beyond factorisation.
-    fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+    fn solve_to_tolerance(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         let Some(multigrid) = &mut self.multigrid else { return factorised(system, u) };
         let (is_tied, before) = (system.product.ties.slaves().next().is_some(), self.work);
-        match multigrid.solve(tolerance, system, u) {
+        match multigrid.solve(system, u) {
             Err(Error::Mechanics(_)) if !is_tied => {
                 let solved = factorised(system, u)?;
                 if is_mechanism(solved.work, before) { Err(Error::LossOfStiffness) } else { Ok(solved) }
@@ -127,7 +127,7 @@ impl<const N: usize> Solver<N> {
 
     /// Solves the whole plate; a window that is up to date takes its new base from it.
     fn solve_whole(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-        let solved = self.solve_to(system.tolerance, system, u)?;
+        let solved = self.solve_to_tolerance(system, u)?;
         self.picture = None;
         // The work of the loads by the window's account against that by the whole system: the error of the window in energy.
         let drift = (self.work / solved.work - 1.0).abs();
@@ -245,7 +245,7 @@ impl<const N: usize> Solver<N> {
                 (0..N).map(|c| first + c * layout.stride).for_each(|index| picture[index] = u[index]);
             }
         }
-        let solved = self.solve_to(PICTURE_TOLERANCE, system, &mut picture)?;
+        let solved = self.solve_to_tolerance(System { tolerance: PICTURE_TOLERANCE, ..system }, &mut picture)?;
         self.picture = Some(picture.clone());
         Ok((picture, solved.iterations))
     }
