@@ -128,19 +128,21 @@ pub fn usual_nodes(specimen: &Specimen) -> ElementFreeSettings {
 }
 
 /// Nodes by which K of a case is judged, made finer `refined` times, where that is known by itself: for the least error that can be asked for;
-/// of a case on nodes with the radius of influence of those and as fine, finer still beside a run with such a radius.
+/// of a case on nodes with the radius of influence of those, finer than the run near tips and rims, and as fine far from them, finer still beside
+/// a run with such a radius.
 pub fn finer_nodes(case: &Case, refined: Option<[u32; 2]>) -> ElementFreeSettings {
     let mut nodes = nodes_for(&case.specimen, TOLERANCE_LEAST, BasisKind::Linear);
+    let [mut near, far] = refined.unwrap_or_default().map(|times| REFINED.powi(times as i32));
     if let Model::Nodes(own) = case.model {
         let of_own = own.resolution;
         let is_as_fine = own.is_given || of_own.support >= nodes.resolution.support;
         let times = if is_as_fine { FINER } else { 1.0 };
         nodes.resolution.far = nodes.resolution.far.min(of_own.far) / times;
-        nodes.resolution.hold *= times;
         nodes.resolution.reach = REACH_OF_FINER.max(of_own.reach);
         nodes.resolution.support = nodes.resolution.support.max(of_own.support);
+        near *= FINER;
     }
-    nodes.resolution = nodes.resolution.finer(refined.unwrap_or_default().map(|times| REFINED.powi(times as i32)));
+    nodes.resolution = nodes.resolution.finer([near, far]);
     nodes.is_final = refined.is_some();
     nodes
 }

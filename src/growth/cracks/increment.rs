@@ -205,7 +205,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
                 // The step before by the parabola through the rate at the end of this one.
                 let late = step::cycles_by_root(Some([then, rate]), [of_it, step.rate], [root, step.root]).cycles;
                 let from = self.curve[..self.curve.len() - 1].iter().rfind(|row| row.is_solved).map_or(0.0, |row| row.cycles);
-                self.state.step_error += 0.5 * (late + from - self.last().cycles);
+                let short = 0.5 * (late + from - self.last().cycles);
+                self.state.step_error += if short.is_finite() { short } else { 0.0 };
             }
             step::cycles_by_root(before, [step.rate, rate], [step.root, then])
         } else {

@@ -12,7 +12,7 @@ use super::scales::StepScales;
 use super::{CrackedPlate, Cracks, Tip};
 use perilife_base::quadrature::integrate;
 
-/// Share of an increment's cycles that the parabola may add: beyond it the rates lie on none.
+/// Share of an increment's cycles that a parabola may add that turns between its ends: beyond it the rates lie on none.
 const CURVATURE_SHARE_MOST: f64 = 0.02;
 /// Growth of a tip over that of the fastest, at the most, where rates are extrapolated.
 const SHARE_MOST: f64 = 1.5;
@@ -121,11 +121,6 @@ pub(super) struct Counted {
     pub bend: f64,
 }
 
-/// Whether a parabola in t from 0 to 1 that adds so much to the cycles is counted: it rises or falls all the way with the rates, or adds little.
-fn is_counted(share: f64, gain: f64, bend: f64) -> bool {
-    share.abs() < CURVATURE_SHARE_MOST || bend.abs() < gain.abs()
-}
-
 /// Cycles of a step of the fastest tip: its rates at the start of the step before, where known, with that step's length, at the
 /// start and at the end of this one, m/cycle, whose length is `grown`, m.
 pub(super) fn cycles(past: Option<[f64; 2]>, rate: f64, rate_then: f64, grown: f64) -> Counted {
@@ -148,7 +143,8 @@ pub(super) fn cycles_by_root(beside: Option<[f64; 2]>, [rate, rate_then]: [f64; 
     let share = integral(curvature) / straight - 1.0;
     let curvature_share = if share.is_finite() { share } else { 0.0 };
     let bend = curvature * rise * rise;
-    let is_counted = curvature.is_finite() && is_counted(curvature_share, slope * rise, bend);
+    // However much a parabola adds that rises or falls with the rates all the way.
+    let is_counted = curvature.is_finite() && (curvature_share.abs() < CURVATURE_SHARE_MOST || bend.abs() < (slope * rise).abs());
     let (counted, bend) = if is_counted { (curvature_share, bend) } else { (0.0, 0.0) };
     Counted { cycles: straight * (1.0 + counted), curvature_share, bend }
 }
