@@ -60,9 +60,9 @@ pub(super) fn below_each_other(table: &mut Table, import: &Import) {
         let is_inch = own.unit == Named::Is(Unit::Rate(RateUnit::Inch)) || import.rate == Some(RateUnit::Inch);
         unit = if is_inch { "(ksi√in)" } else { "(MPa√m)" };
         let (file, column) = (table.file.display(), &table.header[first]);
-        table
-            .notes
-            .push(format!("{file}: {column} read as ΔK {unit}, the unit that matches the rates; otherwise set intensity_unit"));
+        table.notes.push(format!(
+            "units: {file}: {column} read as ΔK {unit}, the unit that matches the rates; otherwise set intensity_unit"
+        ));
     }
     let cells = |row: &Row, (i, ratio, _): &(usize, &str, &str)| {
         let cells = [row.cell(own.index), row.cell(*i), ratio].into_iter().collect();

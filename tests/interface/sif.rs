@@ -90,7 +90,7 @@ fn closed_tips_are_told() {
     let cracks = "cracks = [{ from_mm = [-15, 0], to_mm = [15, 0] }, { from_mm = [0, -16], to_mm = [0, -3.5] }]\n";
     fs::write(dir.path().join("near.toml"), plate(cracks)).unwrap();
     let (stdout, stderr) = done(dir.path(), "sif near.toml --json --method ring -v");
-    assert!(stderr.contains("tip 3 is closed by the load") && stderr.contains("frictionless"), "{stderr}");
+    assert!(stderr.contains("tip 3 is closed by the load") && stderr.contains("without friction"), "{stderr}");
     let object: Value = serde_json::from_str(&stdout).unwrap();
     for (tip, state) in [(0, Value::Null), (1, Value::Null), (3, "closed".into())] {
         let ring = &object["tips"][tip]["methods"]["ring"];

@@ -75,11 +75,22 @@ pub fn read_sweeps() -> Result<Vec<Sweep>> {
 
 pub static SWEEPS: LazyLock<Vec<Sweep>> = LazyLock::new(|| read_sweeps().unwrap_or_default());
 
-perilife_base::kinds! {
-    pub enum Status for "status of a sweep" {
-        Stable = "stable": "error within the bound of the sweep",
-        Degraded = "degraded": "a result beyond it",
-        Failed = "failed": "no result",
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Error within the bound of the sweep.
+    Stable,
+    /// A result beyond it.
+    Degraded,
+    Failed,
+}
+
+impl Status {
+    pub fn name(self) -> &'static str {
+        match self {
+            Status::Stable => "stable",
+            Status::Degraded => "degraded",
+            Status::Failed => "failed",
+        }
     }
 }
 

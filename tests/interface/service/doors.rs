@@ -207,6 +207,9 @@ fn leftovers_of_the_killed_are_removed() {
     let left = || fs::read_dir(&temporary).unwrap().count();
     service.kill();
     kill("-KILL");
+    // Its lock is held until it has died.
+    let stat = format!("/proc/{child}/stat");
+    wait("the process of the job lives", || !fs::read_to_string(&stat).is_ok_and(|stat| !stat.contains(") Z ")));
     assert_eq!(left(), 1);
     // Of another service that still runs, and of nobody who is known.
     let others = temporary.join("perilife-job-other");
