@@ -281,7 +281,7 @@ impl MaterialRates {
             let (law, fitted) = match library_law(&name, thickness_mm * MM, ratio, &folder) {
                 Ok(found) => found,
                 Err(error) => {
-                    lines.push(format!("rates: {name}: none: {error}"));
+                    lines.push(format!("rates: {name}: no growth rates: {error}"));
                     first = first.or(Some(error));
                     continue;
                 }

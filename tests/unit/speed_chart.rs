@@ -169,15 +169,17 @@ fn the_machine_has_threads_and_an_instruction_set() {
 
 #[test]
 fn beaten_points_are_left_out_and_round_off_earns_no_place() {
-    let (nan, inf) = (f64::NAN, f64::INFINITY);
-    let rows: [(&[(f64, f64)], &[usize]); 6] = [
-        (&[(1.0, 3.0), (2.0, 4.0), (0.5, 8.0), (4.0, 1.0), (3.0, 1.0), (5.0, nan), (9.0, 2.0)], &[2, 0, 4]),
+    type Row = (&'static [(f64, f64)], &'static [usize]);
+    const NAN: f64 = f64::NAN;
+    const INF: f64 = f64::INFINITY;
+    let rows: [Row; 6] = [
+        (&[(1.0, 3.0), (2.0, 4.0), (0.5, 8.0), (4.0, 1.0), (3.0, 1.0), (5.0, NAN), (9.0, 2.0)], &[2, 0, 4]),
         (&[(1.0, 2.0), (3.0, 2.0 * (1.0 - 1e-6))], &[0]),
         (&[(1.0, 2.0), (3.0, 2.0 * (1.0 - 1e-2))], &[0, 1]),
         // No error at all earns one, but once.
         (&[(1.0, 2.0), (2.0, 0.0), (3.0, 0.0)], &[0, 1]),
         (&[], &[]),
-        (&[(inf, 1.0), (1.0, nan)], &[]),
+        (&[(INF, 1.0), (1.0, NAN)], &[]),
     ];
     rows.iter().for_each(|(points, wanted)| assert_eq!(front(points), *wanted, "{points:?}"));
 }
