@@ -185,8 +185,8 @@ fn lives_end_by_limit_loads(plates: usize, shares: &[f64]) {
             let cracks = grown(&case, &run);
             for tip in &run.curve[run.curve.len() - 1].tips {
                 let strips = by_strips(&case.specimen, &cracks, tip.position);
-                let bears = strips / case.loading.maximum;
-                assert!(bears > 0.995, "seed {seed}, {share}: {bears}, {}", run.stop);
+                let margin = strips / case.loading.maximum;
+                assert!(margin > 0.995, "seed {seed}, {share}: {margin}, {}", run.stop);
             }
         }
         done += 1;

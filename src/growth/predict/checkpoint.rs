@@ -31,7 +31,7 @@ pub struct KeptRun {
 
 impl Kept for KeptRun {
     type Input = Case;
-    const SEAL: Seal = Seal { of: "this program", magic: SIGN, form: 9 };
+    const SEAL: Seal = Seal { of: "this program", magic: SIGN, form: 10 };
     const OF_ANOTHER: &'static str = "is for a different case (or the case was edited)";
 
     fn hash(case: &Case) -> [u8; 32] {
