@@ -127,21 +127,25 @@ impl Workers {
 
 /// What the name of the temporary folder of a job begins with.
 const PREFIX: &str = "perilife-job-";
-/// File in it that its worker keeps locked.
-const LOCK: &str = "lock";
 
-/// A temporary folder of a job, and the lock that says that somebody needs it.
+/// A temporary folder of a job, and the lock on it that says that somebody needs it.
 fn job_folder() -> std::io::Result<(TempDir, File)> {
-    let folder = tempfile::Builder::new().prefix(PREFIX).tempdir()?;
-    let lock = File::create(folder.path().join(LOCK))?;
-    lock.lock()?;
-    Ok((folder, lock))
+    loop {
+        let folder = tempfile::Builder::new().prefix(PREFIX).tempdir()?;
+        let lock = File::open(folder.path())?;
+        lock.lock()?;
+        // Another service that starts may have removed it before it was locked.
+        if folder.path().exists() {
+            return Ok((folder, lock));
+        }
+    }
 }
 
 /// Removes folders whose worker was killed together with its job.
 fn remove_leftovers() {
     for path in entries(&std::env::temp_dir()).unwrap_or_default().into_iter().filter(|path| name_of(path).starts_with(PREFIX)) {
-        if File::open(path.join(LOCK)).is_ok_and(|lock| lock.try_lock().is_ok()) {
+        let Ok(lock) = File::open(&path) else { continue };
+        if lock.try_lock().is_ok() {
             let removed = std::fs::remove_dir_all(&path);
             tracing::info!("{}, whose worker is gone, is removed: {removed:?}", path.display());
         }

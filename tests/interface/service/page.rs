@@ -166,7 +166,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.until("document.querySelector(\"#view-predict [data-key='loading.stress_ratio']\").value === '0.2'");
     walk.look("04b_use_law");
     page.click("#plate-example");
-    page.fill("#view-predict [data-key='model.spacing_mm']", "0.8");
+    page.fill("#view-predict [data-key='model.spacing_mm']", "0.5");
     page.see("#predict:not([disabled])");
     let cracks = page.count("[data-rows=cracks] tbody tr");
     page.click("[data-tool=crack]");
@@ -305,7 +305,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.see("[data-value=life_cycles]");
 
     // Stopped where it is, a run keeps its curve.
-    let running = service.submit("predictions", &of("stopped", SLOW));
+    let running = service.submit("predictions", &of("stopped", &SLOW.replace("spacing_mm = 0.8", "spacing_mm = 0.5")));
     page.open(&format!("{}{}", service.url, running.replace("/v1/", "/#/")));
     page.click("[data-action=stop]");
     page.see("#job[data-job-state=succeeded]");
