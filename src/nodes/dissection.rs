@@ -5,6 +5,7 @@
 //! holds it (multifrontal method: Duff and Reid 1983, ACM Trans. Math. Softw. 9:302). So nothing sparse is stored, ordered or
 //! searched. A part that eliminates few unknowns is dissolved in the one that holds it. Parts are worked on at the same time, and the order of sums does not depend on the number of threads.
 
+use std::cmp::Ordering;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -73,8 +74,9 @@ impl Factor {
     /// Errors: [`Error::LossOfStiffness`] where the sum is not positive definite; those of the matrices.
     pub fn of(members: &[Member], first: &[u32], matrices: &impl Matrices) -> Result<Self> {
         let nodes = first.len() - 1;
-        let mut order: Vec<u32> = (0..members.len() as u32).collect();
-        let mut plan = Bisection { members, first }.plan(&mut order, 0);
+        let bisection = Bisection { members, first };
+        let (mut order, [along_x, along_y]) = (vec![0; members.len()], [0, 1].map(|axis| bisection.along(axis)));
+        let mut plan = bisection.plan([along_x, along_y], 0, (&mut order, 0));
         // Where the members of a node stand, from the first to the last; an end of 0 has none.
         let mut spans = vec![0..0; nodes];
         for (place, &member) in order.iter().enumerate() {
@@ -165,62 +167,70 @@ struct Bisection<'a> {
 }
 
 impl Bisection<'_> {
-    /// Orders the members part by part, the first of them being number `start` of all.
-    fn plan(&self, members: &mut [u32], start: usize) -> Plan {
-        let range = start..start + members.len();
-        if members.len() <= UNDIVIDED {
+    /// All members along x or y.
+    fn along(&self, axis: usize) -> Vec<u32> {
+        let mut order: Vec<u32> = (0..self.members.len() as u32).collect();
+        order.sort_unstable_by(|a, b| self.is_before(axis, *a, *b));
+        order
+    }
+
+    fn is_before(&self, axis: usize, a: u32, b: u32) -> Ordering {
+        let place = |member: u32| self.members[member as usize].at[axis];
+        place(a).total_cmp(&place(b)).then(a.cmp(&b))
+    }
+
+    /// Orders members, given along x and along y, part by part into `order`, of which the first is number `start` of all; a part that is
+    /// not divided keeps their order along `axis`.
+    fn plan(&self, along: [Vec<u32>; 2], axis: usize, (order, start): (&mut [u32], usize)) -> Plan {
+        let range = start..start + order.len();
+        if order.len() <= UNDIVIDED {
+            order.copy_from_slice(&along[axis]);
             return Plan { members: range, own: Vec::new(), parts: Vec::new() };
         }
-        let (left, right) = self.halves(members);
-        let middle = start + left.len();
-        let (left, right) = rayon::join(|| self.plan(left, start), || self.plan(right, middle));
+        let (x, y) = rayon::join(|| self.cut(&along[0]), || self.cut(&along[1]));
+        let (axis, place) = if y.0 < x.0 { (1, y.1) } else { (0, x.1) };
+        let first_right = along[axis][place];
+        let is_left = |member: &u32| self.is_before(axis, *member, first_right).is_lt();
+        let (left, right): (Vec<_>, Vec<_>) = along.into_iter().map(|members| members.into_iter().partition(is_left)).unzip();
+        let (of_left, of_right) = order.split_at_mut(place);
+        let part = |along: Vec<Vec<u32>>, order| self.plan(along.try_into().unwrap_or_default(), axis, order);
+        let (left, right) = rayon::join(|| part(left, (of_left, start)), || part(right, (of_right, start + place)));
         Plan { members: range, own: Vec::new(), parts: vec![left, right] }
     }
 
-    /// Divides a part across x or y where its two parts have the fewest unknowns in common, times 1 and how far that is from the middle.
-    fn halves<'a>(&self, members: &'a mut [u32]) -> (&'a mut [u32], &'a mut [u32]) {
-        let half = members.len() / 2;
-        let sort = |members: &mut [u32], axis: usize| {
-            let place = |member: u32| self.members[member as usize].at[axis];
-            members.sort_unstable_by(|a, b| place(*a).total_cmp(&place(*b)).then(a.cmp(b)));
-        };
-        let mut best = [(f64::INFINITY, half); 2];
-        let mut spans = vec![[u32::MAX, 0]; self.first.len() - 1];
-        for (axis, best) in best.iter_mut().enumerate() {
-            sort(members, axis);
-            for (k, &member) in (0..).zip(&*members) {
-                for &node in &self.members[member as usize].nodes {
-                    let span = &mut spans[node as usize];
-                    *span = [span[0].min(k), k];
+    /// Where to divide members that stand in this order: where the two parts have the fewest unknowns in common, times 1 and how far that is
+    /// from the middle; with that number.
+    fn cut(&self, order: &[u32]) -> (f64, usize) {
+        let (mut spans, mut met) = (vec![[u32::MAX, 0]; self.first.len() - 1], Vec::new());
+        for (k, &member) in (0..).zip(order) {
+            for &node in &self.members[member as usize].nodes {
+                let span = &mut spans[node as usize];
+                if span[0] == u32::MAX {
+                    span[0] = k;
+                    met.push(node as usize);
                 }
-            }
-            // Unknowns that a cut before a place divides: of nodes that begin before it and end there or later.
-            let mut change = vec![0_i64; members.len() + 1];
-            for &member in &*members {
-                for &node in &self.members[member as usize].nodes {
-                    let [from, to] = std::mem::replace(&mut spans[node as usize], [u32::MAX, 0]);
-                    if from < to {
-                        let unknowns = i64::from(self.first[node as usize + 1] - self.first[node as usize]);
-                        change[from as usize + 1] += unknowns;
-                        change[to as usize + 1] -= unknowns;
-                    }
-                }
-            }
-            let mut common = 0;
-            for (place, change) in change.iter().enumerate() {
-                common += change;
-                let off = (place as f64 / members.len() as f64 - 0.5).abs();
-                let cost = common as f64 * (1.0 + off);
-                if off <= OFF_MIDDLE && cost < best.0 {
-                    *best = (cost, place);
-                }
+                span[1] = k;
             }
         }
-        let axis = usize::from(best[1].0 < best[0].0);
-        if axis == 0 {
-            sort(members, 0);
+        // Unknowns that a cut before a place divides: of nodes that begin before it and end there or later.
+        let mut change = vec![0_i64; order.len() + 1];
+        for node in met {
+            let (unknowns, [from, to]) = (i64::from(self.first[node + 1] - self.first[node]), spans[node]);
+            if from < to {
+                change[from as usize + 1] += unknowns;
+                change[to as usize + 1] -= unknowns;
+            }
         }
-        members.split_at_mut(best[axis].1)
+        let (mut common, mut best) = (0, (f64::INFINITY, order.len() / 2));
+        for (place, change) in change.iter().enumerate() {
+            common += change;
+            let off = (place as f64 / order.len() as f64 - 0.5).abs();
+            let cost = common as f64 * (1.0 + off);
+            if off <= OFF_MIDDLE && cost < best.0 {
+                best = (cost, place);
+            }
+        }
+        best
     }
 }
 

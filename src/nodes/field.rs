@@ -128,16 +128,20 @@ impl Discretisation {
     }
 
     fn find_neighbours(&mut self) {
-        for (node, (&at, &support)) in self.nodes.at.iter().zip(&self.supports).enumerate() {
-            let (low, high) = (at.map(|x| x - support), at.map(|x| x + support));
-            let (grid, leaves) = (&self.grid, &mut self.leaves);
-            grid.visit(low, high, &mut |leaf| {
-                let [from, to] = grid.bounds(leaf);
+        let of_node = |(&at, &support): (&Point, &f64)| {
+            let (low, high, mut reached) = (at.map(|x| x - support), at.map(|x| x + support), Vec::new());
+            self.grid.visit(low, high, &mut |leaf| {
+                let [from, to] = self.grid.bounds(leaf);
                 let outside = [0, 1].map(|i| (from[i] - at[i]).max(at[i] - to[i]).max(0.0));
                 if outside[0] * outside[0] + outside[1] * outside[1] < support * support {
-                    leaves[leaf].nodes.push(node as u32);
+                    reached.push(leaf);
                 }
             });
+            reached
+        };
+        let reached: Vec<Vec<usize>> = self.nodes.at.par_iter().zip(&self.supports).map(of_node).collect();
+        for (node, leaves) in (0..).zip(reached) {
+            leaves.into_iter().for_each(|leaf| self.leaves[leaf].nodes.push(node));
         }
         let (grid, obstacles, at, supports) = (&self.grid, &self.obstacles, &self.nodes.at, &self.supports);
         self.leaves.par_iter_mut().enumerate().for_each(|(index, leaf)| {

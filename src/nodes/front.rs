@@ -5,6 +5,7 @@ use faer::linalg::cholesky::llt::factor::{LltRegularization, cholesky_in_place, 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, MatRef, Par, Spec};
 
 /// A symmetric matrix by its lower triangle, the unknowns that are eliminated first.
@@ -22,7 +23,9 @@ pub struct FrontalMatrix {
 impl FrontalMatrix {
     /// A zero matrix of `own` unknowns to be eliminated and `rest` others.
     pub fn new(own: usize, rest: usize) -> Self {
-        FrontalMatrix { own, rest, panel: vec![0.0; (own + rest) * own], complement: vec![0.0; rest * rest] }
+        // Zeros of the other sign are written: memory of plain zeros comes from the system page by page, twice where it is read first, and
+        // each time all threads are interrupted.
+        FrontalMatrix { own, rest, panel: vec![-0.0; (own + rest) * own], complement: vec![-0.0; rest * rest] }
     }
 
     /// A column, with the row at which it begins.
@@ -72,30 +75,11 @@ impl FrontalMatrix {
         if own == 0 {
             return true;
         }
-        let panel = MatMut::from_column_major_slice_mut(&mut self.panel, own + rest, own);
-        let (mut corner, mut below) = panel.split_at_row_mut(own);
-        let scratch = cholesky_in_place_scratch::<f64>(own, Par::Seq, Spec::default());
-        let Ok(mut memory) = MemBuffer::try_new(scratch) else { return false };
-        let regularisation = LltRegularization::default();
-        let stack = MemStack::new(&mut memory);
-        if cholesky_in_place(corner.as_mut(), regularisation, Par::Seq, stack, Spec::default()).is_err() {
+        if !factor(MatMut::from_column_major_slice_mut(&mut self.panel, own + rest, own)) {
             return false;
         }
-        if rest > 0 {
-            // L₂₁ L₁₁ᵀ = A₂₁
-            solve_lower_triangular_in_place(corner.as_ref(), below.as_mut().transpose_mut(), Par::Seq);
-            triangular::matmul(
-                MatMut::from_column_major_slice_mut(&mut self.complement, rest, rest),
-                BlockStructure::TriangularLower,
-                Accum::Add,
-                below.as_ref(),
-                BlockStructure::Rectangular,
-                below.as_ref().transpose(),
-                BlockStructure::Rectangular,
-                -1.0,
-                Par::Seq,
-            );
-        }
+        let below = MatRef::from_column_major_slice(&self.panel, own + rest, own).split_at_row(own).1;
+        take_off_square(MatMut::from_column_major_slice_mut(&mut self.complement, rest, rest), below);
         true
     }
 
@@ -139,6 +123,72 @@ impl FrontalMatrix {
             local[k] = (local[k] - dot(&column[1..], &local[k + 1..])) / column[0];
         }
         unknowns[..self.own].iter().zip(local).for_each(|(&unknown, local)| b[unknown as usize] = local);
+    }
+}
+
+/// Columns of a panel that are factored at a time; what is larger is divided between threads, by its size alone.
+const UNDIVIDED: usize = 128;
+
+/// `[L₁₁; L₂₁]` in place of the columns `[A₁₁; A₂₁]` of a matrix; whether it is positive definite.
+fn factor(panel: MatMut<'_, f64>) -> bool {
+    let own = panel.ncols();
+    if own > UNDIVIDED {
+        let half = own / 2;
+        let (mut left, right) = panel.split_at_col_mut(half);
+        if !factor(left.rb_mut()) {
+            return false;
+        }
+        let mut right = right.split_at_row_mut(half).1;
+        let (corner, below) = right.rb_mut().split_at_row_mut(own - half);
+        let (of_corner, of_below) = left.rb().split_at_row(half).1.split_at_row(own - half);
+        rayon::join(|| take_off_square(corner, of_corner), || take_off(below, of_below, of_corner));
+        return factor(right);
+    }
+    let (mut corner, below) = panel.split_at_row_mut(own);
+    let scratch = cholesky_in_place_scratch::<f64>(own, Par::Seq, Spec::default());
+    let Ok(mut memory) = MemBuffer::try_new(scratch) else { return false };
+    let (regularisation, stack) = (LltRegularization::default(), MemStack::new(&mut memory));
+    let is_definite = cholesky_in_place(corner.rb_mut(), regularisation, Par::Seq, stack, Spec::default()).is_ok();
+    if is_definite {
+        solve_rows(corner.rb(), below);
+    }
+    is_definite
+}
+
+/// `L₂₁ L₁₁ᵀ = A₂₁` in place of A₂₁.
+fn solve_rows(corner: MatRef<'_, f64>, below: MatMut<'_, f64>) {
+    let rows = below.nrows();
+    if rows > 2 * UNDIVIDED {
+        let (upper, lower) = below.split_at_row_mut(rows / 2);
+        rayon::join(|| solve_rows(corner, upper), || solve_rows(corner, lower));
+    } else {
+        solve_lower_triangular_in_place(corner, below.transpose_mut(), Par::Seq);
+    }
+}
+
+/// `C - L Lᵀ` in place of the lower triangle of C.
+fn take_off_square(complement: MatMut<'_, f64>, l: MatRef<'_, f64>) {
+    let rows = l.nrows();
+    if rows > 2 * UNDIVIDED {
+        let (first, _, mixed, second) = complement.split_at_mut(rows / 2, rows / 2);
+        let (upper, lower) = l.split_at_row(rows / 2);
+        let others = || rayon::join(|| take_off_square(first, upper), || take_off_square(second, lower));
+        rayon::join(|| take_off(mixed, lower, upper), others);
+    } else {
+        let (whole, lower) = (BlockStructure::Rectangular, BlockStructure::TriangularLower);
+        triangular::matmul(complement, lower, Accum::Add, l, whole, l.transpose(), whole, -1.0, Par::Seq);
+    }
+}
+
+/// `C - A Bᵀ` in place of C.
+fn take_off(product: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
+    let rows = a.nrows();
+    if rows > 2 * UNDIVIDED {
+        let (first, second) = product.split_at_row_mut(rows / 2);
+        let (upper, lower) = a.split_at_row(rows / 2);
+        rayon::join(|| take_off(first, upper, b), || take_off(second, lower, b));
+    } else {
+        matmul(product, Accum::Add, a, b.transpose(), -1.0, Par::Seq);
     }
 }
 

@@ -1,5 +1,7 @@
 //! Equilibrium of a plate of nodes, and its displacement and stress on an even raster for pictures.
 
+use std::sync::{Mutex, PoisonError};
+
 use rayon::prelude::*;
 
 use super::assembly::{Scratch, add_cell, dilatation};
@@ -68,6 +70,8 @@ struct Stiffness<'a> {
     held: &'a [Square],
     /// First unknown of every node, and of every grip after them.
     first: &'a [u32],
+    /// Of threads that are done with theirs.
+    scratch: Mutex<Vec<Scratch>>,
 }
 
 impl Stiffness<'_> {
@@ -96,7 +100,9 @@ impl Stiffness<'_> {
 
 impl Matrices for Stiffness<'_> {
     fn add(&self, members: &[u32], places: &[u32], front: &mut FrontalMatrix) -> Result<()> {
-        let mut scratch = Scratch::of(self.plate.nodes.at.len());
+        let all = || self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
+        let spare = all().pop();
+        let mut scratch = spare.unwrap_or_else(|| Scratch::of(self.plate.nodes.at.len()));
         for &member in members {
             let member = member as usize;
             if let Some((leaf, points)) = self.cells.get(member) {
@@ -112,6 +118,7 @@ impl Matrices for Stiffness<'_> {
                 unknowns[..=k].iter().zip(v).for_each(|(&b, of_b)| front.add(place(a), place(b), factor * v[k] * of_b));
             }
         }
+        all().push(scratch);
         Ok(())
     }
 }
@@ -138,7 +145,8 @@ pub fn solve_with(
     let Boundary { mut forces, held, of_grips } = Boundary::new(specimen, plate, far)?;
     let grips = (plate.unknowns()..plate.unknowns() + of_grips).step_by(UNKNOWNS_OF_GRIP);
     let first: Vec<u32> = plate.first.iter().copied().chain(grips.map(|first| (first + UNKNOWNS_OF_GRIP) as u32)).collect();
-    let stiffness = Stiffness { plate, thickness: specimen.thickness, cells: &cells, held: &held, first: &first };
+    let stiffness =
+        Stiffness { plate, thickness: specimen.thickness, cells: &cells, held: &held, first: &first, scratch: Mutex::default() };
     let factor = Factor::of(&stiffness.members(), &first, &stiffness)?;
     if specimen.moved_section().is_none() {
         forces.iter_mut().for_each(|force| *force *= load);
