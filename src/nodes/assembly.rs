@@ -242,25 +242,23 @@ fn add_nodes(plate: &Discretisation, places: &[usize], product: &[f64], front: &
     // Stress of unit strains.
     let [direct, lateral, _] = elasticity.stress(&[[1.0, 0.0], [0.0, 0.0]]);
     let shear = elasticity.shear_modulus;
-    let n = 2 * places.len();
+    let n = places.len();
+    let columns = product.as_chunks::<2>().0;
     for (j, &column) in places.iter().enumerate() {
-        let (of_x, of_y) = (&product[2 * j * n..(2 * j + 1) * n], &product[(2 * j + 1) * n..(2 * j + 2) * n]);
-        let [xx, xy, yy] = [of_x[2 * j], of_x[2 * j + 1], of_y[2 * j + 1]];
-        let below = || of_x.chunks_exact(2).zip(of_y.chunks_exact(2)).zip(places).skip(j + 1);
-        let (sums, first) = front.column(column);
-        sums[column - first] += direct * xx + shear * yy;
-        sums[column + 1 - first] += (lateral + shear) * xy;
-        for ((x, y), &row) in below() {
-            let sums = &mut sums[row - first..row - first + 2];
-            sums[0] += direct * x[0] + shear * y[1];
-            sums[1] += lateral * x[1] + shear * y[0];
-        }
-        let (sums, first) = front.column(column + 1);
-        sums[column + 1 - first] += direct * yy + shear * xx;
-        for ((x, y), &row) in below() {
-            let sums = &mut sums[row - first..row - first + 2];
-            sums[0] += lateral * y[0] + shear * x[1];
-            sums[1] += direct * y[1] + shear * x[0];
+        let (of_x, of_y) = (&columns[2 * j * n..(2 * j + 1) * n], &columns[(2 * j + 1) * n..(2 * j + 2) * n]);
+        let ([in_x, in_y], first) = front.columns(column);
+        let ([xx, xy], yy, diagonal) = (of_x[j], of_y[j][1], column - first);
+        in_x[diagonal] += direct * xx + shear * yy;
+        in_x[diagonal + 1] += (lateral + shear) * xy;
+        in_y[diagonal + 1] += direct * yy + shear * xx;
+        // Two sums at a time, each of what stands beside and across.
+        for ((x, y), &row) in of_x.iter().zip(of_y).zip(places).skip(j + 1) {
+            let rows = row - first..row - first + 2;
+            let of_rows = |column: &mut [f64], beside: [f64; 2], across: [f64; 2]| {
+                column.iter_mut().zip(beside).zip(across).for_each(|((sum, beside), across)| *sum += beside + shear * across);
+            };
+            of_rows(&mut in_x[rows.clone()], [direct * x[0], lateral * x[1]], [y[1], y[0]]);
+            of_rows(&mut in_y[rows], [lateral * y[0], direct * y[1]], [x[1], x[0]]);
         }
     }
 }

@@ -40,6 +40,15 @@ impl FrontalMatrix {
         }
     }
 
+    /// The two columns of a node, with the row at which they begin.
+    pub fn columns(&mut self, column: usize) -> ([&mut [f64]; 2], usize) {
+        let (size, own) = (self.own + self.rest, self.own);
+        let (columns, size, from, first) =
+            if column < own { (&mut self.panel, size, column, 0) } else { (&mut self.complement, self.rest, column - own, own) };
+        let (x, y) = columns[from * size..(from + 2) * size].split_at_mut(size);
+        ([x, y], first)
+    }
+
     /// Adds to an element and so to its mirror image, whichever is the one below the diagonal.
     pub fn add(&mut self, a: usize, b: usize, value: f64) {
         let (column, first) = self.column(a.min(b));
