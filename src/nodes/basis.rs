@@ -128,7 +128,7 @@ fn shape_functions<const M: usize>(
             let length = squared.sqrt();
             Some((length, if length > 0.0 { [x / length, y / length] } else { [0.0; 2] }))
         } else {
-            near.way(position, at)
+            near.way(position, at, support)
         };
         let Some((length, gradient)) = way.filter(|way| way.0 < support) else { continue };
         let (weight, slope) = spline(length / support);

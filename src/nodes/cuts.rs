@@ -17,6 +17,9 @@ const HOLE_SHARE: f64 = 0.6;
 /// Share of a segment left out at its ends, which may lie on a rim.
 const ENDS: f64 = 1e-6;
 
+/// Sides of an outline in a box.
+const TOGETHER: usize = 8;
+
 /// A line along which the plate is cut.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cut {
@@ -40,21 +43,21 @@ pub struct Obstacles {
 /// Those near a cell.
 #[derive(Debug, Clone, Default)]
 pub struct Near {
-    cuts: Vec<NearCut>,
+    cuts: Vec<Pieces>,
     holes: Vec<Hole>,
-    edges: Vec<[Point; 2]>,
+    edges: Vec<Pieces>,
     corners: Vec<Point>,
 }
 
-/// Pieces of a cut near a cell, the box around them, and the ends round which the way leads.
+/// Pieces of a cut, or some sides, near a cell, the box around them, and the ends round which the way leads.
 #[derive(Debug, Clone, Default)]
-struct NearCut {
+struct Pieces {
     pieces: Vec<[Point; 2]>,
     bounds: [Point; 2],
     free: Vec<Point>,
 }
 
-impl NearCut {
+impl Pieces {
     /// Whether a segment crosses the pieces an odd number of times.
     fn parts(&self, a: Point, b: Point) -> bool {
         let [low, high] = self.bounds;
@@ -91,13 +94,20 @@ impl Obstacles {
             let near: Vec<[Point; 2]> = pieces.into_iter().filter(is_near).collect();
             (!near.is_empty()).then(|| {
                 let bounds = bounding_box(near.as_flattened());
-                NearCut { pieces: near, bounds, free: cut.free.clone() }
+                Pieces { pieces: near, bounds, free: cut.free.clone() }
             })
+        };
+        let sides: Vec<[Point; 2]> =
+            self.edges.iter().filter(|[a, b]| distance_to_segment(at, *a, *b) <= reach).copied().collect();
+        let stretch = |sides: &[[Point; 2]]| Pieces {
+            pieces: sides.to_vec(),
+            bounds: bounding_box(sides.as_flattened()),
+            free: Vec::new(),
         };
         Near {
             cuts: self.cuts.iter().filter_map(of_cut).collect(),
             holes: self.holes.iter().filter(|hole| distance(at, hole.centre) - hole.radius <= reach).copied().collect(),
-            edges: self.edges.iter().filter(|[a, b]| distance_to_segment(at, *a, *b) <= reach).copied().collect(),
+            edges: sides.chunks(TOGETHER).map(stretch).collect(),
             corners: self.corners.iter().filter(|corner| distance(at, **corner) <= reach).copied().collect(),
         }
     }
@@ -135,7 +145,7 @@ impl Near {
             outside[0].hypot(outside[1]) >= HOLE_SHARE * hole.radius
         };
         self.cuts.iter().all(|cut| cut.pieces.iter().all(is_beside))
-            && self.edges.iter().all(is_beside)
+            && self.edges.iter().all(|stretch| stretch.pieces.iter().all(is_beside))
             && self.holes.iter().all(misses)
     }
 
@@ -143,17 +153,20 @@ impl Near {
         self.cuts.is_empty() && self.holes.is_empty() && self.edges.is_empty()
     }
 
-    /// The way from a node to a point; `None` where both do not see each other.
-    pub fn way(&self, node: Point, at: Point) -> Option<Way> {
+    /// The way from a node to a point; `None` where both do not see each other, or round a corner by `most`, m, and more.
+    pub fn way(&self, node: Point, at: Point, most: f64) -> Option<Way> {
         let mut way = straight(node, at);
         let in_hole = |hole: &Hole| distance_to_segment(hole.centre, node, at) < HOLE_SHARE * hole.radius;
         if self.holes.iter().any(in_hole) {
             return None;
         }
         if self.leaves_outline(node, at) {
-            let clear = |corner: &&Point| !self.leaves_outline(node, **corner) && !self.leaves_outline(**corner, at);
-            let ways = self.corners.iter().filter(clear).map(|corner| round(node, *corner, at));
-            way = ways.min_by(|a, b| a.0.total_cmp(&b.0))?;
+            // The shortest first: few are looked along before one is clear.
+            let ways = self.corners.iter().map(|corner| (round(node, *corner, at), *corner));
+            let mut ways: Vec<(Way, Point)> = ways.filter(|((length, _), _)| *length < most).collect();
+            ways.sort_unstable_by(|a, b| a.0.0.total_cmp(&b.0.0));
+            let is_clear = |corner| !self.leaves_outline(node, corner) && !self.leaves_outline(corner, at);
+            way = ways.into_iter().find(|(_, corner)| is_clear(*corner))?.0;
         }
         for cut in &self.cuts {
             if cut.parts(node, at) {
@@ -172,7 +185,10 @@ impl Near {
             return false;
         }
         let (from, to) = (along(a, b, ENDS), along(a, b, 1.0 - ENDS));
-        self.edges.iter().any(|[c, d]| segments_touch(from, to, *c, *d) && crosses(from, to, *c, *d))
+        let is_crossed = |[c, d]: &[Point; 2]| segments_touch(from, to, *c, *d) && crosses(from, to, *c, *d);
+        let (least, most) = ([0, 1].map(|i| from[i].min(to[i])), [0, 1].map(|i| from[i].max(to[i])));
+        let is_near = |[low, high]: [Point; 2]| (0..2).all(|i| least[i] <= high[i] && low[i] <= most[i]);
+        self.edges.iter().any(|stretch| is_near(stretch.bounds) && stretch.pieces.iter().any(is_crossed))
     }
 }
 

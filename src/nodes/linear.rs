@@ -13,10 +13,10 @@ type Lanes = [f64; LANES];
 /// Nodes of a leaf, and what they are to a point.
 #[derive(Debug, Clone, Default)]
 pub struct Workspace {
-    /// Positions and supports, filled up with a node that nothing sees.
+    /// Positions, and 1 over supports, filled up with a node that nothing sees.
     x: Vec<Lanes>,
     y: Vec<Lanes>,
-    support: Vec<Lanes>,
+    over_support: Vec<Lanes>,
     /// Length of the way to the point and its gradient, which becomes the slope of the weight.
     length: Vec<Lanes>,
     slope: [Vec<Lanes>; 2],
@@ -28,14 +28,14 @@ impl Workspace {
     /// Takes up the nodes of a leaf.
     pub fn load(&mut self, nodes: &[u32], positions: &[Point], supports: &[f64]) {
         let size = nodes.len().div_ceil(LANES);
-        for (own, far) in [(&mut self.x, 1e30), (&mut self.y, 1e30), (&mut self.support, 1.0)] {
+        for (own, far) in [(&mut self.x, 1e30), (&mut self.y, 1e30), (&mut self.over_support, 1.0)] {
             own.resize(size, [far; LANES]);
             own.iter_mut().next_back().into_iter().for_each(|last| *last = [far; LANES]);
         }
-        let Workspace { x, y, support, .. } = self;
-        let to = x.as_flattened_mut().iter_mut().zip(y.as_flattened_mut()).zip(support.as_flattened_mut());
-        for (((x, y), support), &node) in to.zip(nodes) {
-            ([*x, *y], *support) = (positions[node as usize], supports[node as usize]);
+        let Workspace { x, y, over_support, .. } = self;
+        let to = x.as_flattened_mut().iter_mut().zip(y.as_flattened_mut()).zip(over_support.as_flattened_mut());
+        for (((x, y), over), &node) in to.zip(nodes) {
+            ([*x, *y], *over) = (positions[node as usize], 1.0 / supports[node as usize]);
         }
         let [a, b] = &mut self.slope;
         let [c, d, e] = &mut self.values;
@@ -60,10 +60,11 @@ pub fn shape_functions(
     arch.dispatch(Ways { room, at });
     for (k, _) in clear.iter().enumerate().filter(|(_, clear)| !**clear) {
         let (chunk, k) = (k / LANES, k % LANES);
-        if room.length[chunk][k] >= room.support[chunk][k] {
+        let over = room.over_support[chunk][k];
+        if room.length[chunk][k] * over >= 1.0 {
             continue;
         }
-        match near.way([room.x[chunk][k], room.y[chunk][k]], at) {
+        match near.way([room.x[chunk][k], room.y[chunk][k]], at, 1.0 / over) {
             Some((length, [x, y])) => {
                 (room.length[chunk][k], room.slope[0][chunk][k], room.slope[1][chunk][k]) = (length, x, y);
             }
@@ -145,16 +146,16 @@ impl pulp::NullaryFnOnce for Moments<'_> {
 
     #[inline(always)]
     fn call(self) -> Self::Output {
-        let Moments { room: Workspace { x, y, support, length, slope: [slope_x, slope_y], weight, .. }, at, scale } = self;
+        let Moments { room: Workspace { x, y, over_support, length, slope: [slope_x, slope_y], weight, .. }, at, scale } = self;
         let mut sums = [[[0.0; LANES]; 6]; 3];
         let over_scale = 1.0 / scale;
         let n = x.len();
-        let (x, y, support, length) = (&x[..n], &y[..n], &support[..n], &length[..n]);
+        let (x, y, over_support, length) = (&x[..n], &y[..n], &over_support[..n], &length[..n]);
         let (slope_x, slope_y, weight) = (&mut slope_x[..n], &mut slope_y[..n], &mut weight[..n]);
         for c in 0..n {
             let (mut factors, mut p) = ([[0.0; LANES]; 3], [[0.0; LANES]; 2]);
             for k in 0..LANES {
-                let over = 1.0 / support[c][k];
+                let over = over_support[c][k];
                 let s = length[c][k] * over;
                 let left = 1.0 - s;
                 let inner = (2.0 / 3.0 + s * s * (4.0 * s - 4.0), s * (12.0 * s - 8.0));
