@@ -23,8 +23,8 @@ const RAMP: [[f64; 3]; 5] =
     [[90.0, 169.0, 230.0], [79.0, 127.0, 209.0], [106.0, 82.0, 179.0], [122.0, 42.0, 130.0], [90.0, 11.0, 69.0]];
 /// Shares of the life that are marked along the path, percent.
 const MARKS: [f64; 4] = [25.0, 50.0, 75.0, 90.0];
-/// Share of the plate below which cracks and their ways get a picture of their own.
-const SMALL: f64 = 0.7;
+/// How much larger cracks and their ways are in a picture of their own at the least.
+const ENLARGED: f64 = 1.4;
 /// Places of a tip between which an animation moves it evenly.
 const FRAMES: usize = 40;
 /// Room around the plate for loads, and below it for the scale, px.
@@ -89,13 +89,16 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
     let [low, high] = bounding_box(&plate.outline_mm);
     let of_cracks: Vec<Point> =
         plate.cracks_mm.iter().flatten().chain(ways.iter().flat_map(|way| &way.places)).copied().collect();
-    let largest = |[low, high]: [Point; 2]| (high[0] - low[0]).max(high[1] - low[1]);
-    let of_cracks =
-        Some(bounding_box(&of_cracks)).filter(|own| !of_cracks.is_empty() && largest(*own) < SMALL * largest([low, high]));
-    let width = if of_cracks.is_some() { 0.45 * size.width } else { size.width };
     // Beside the plate there is room for loads only where some act there.
     let beside = if plate.loads.iter().any(|load| load.direction[0].abs() > 0.5) { AROUND } else { 14.0 };
-    let room = [width - 2.0 * beside, size.height - 2.0 * AROUND - BELOW];
+    let room = |width: f64| [width - 2.0 * beside, size.height - 2.0 * AROUND - BELOW];
+    let narrow = 0.45 * size.width;
+    let is_enlarged = |own: &[Point; 2]| {
+        middled(around(*own), beside_plate(size), [0.0; 2]).scale > ENLARGED * middled([low, high], room(narrow), [0.0; 2]).scale
+    };
+    let of_cracks = (!of_cracks.is_empty()).then(|| bounding_box(&of_cracks)).filter(is_enlarged);
+    let width = if of_cracks.is_some() { narrow } else { size.width };
+    let room = room(width);
     let mut sketch = middled([low, high], room, [0.5 * width, AROUND + 0.5 * room[1]]);
     let drawing = Drawing { plate, ways: &ways, life: tables.life(), text: size.text, width: size.width };
     let detail = of_cracks.map(|own| drawing.detail(own, size));
@@ -106,7 +109,8 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
         drawing.cracks(sketch, detail.is_none());
         scale_bar(sketch, [14.0, size.height - 8.0], bar, size.text);
         if let Some((_, size, Sketch { scale, origin, .. })) = &detail {
-            let corners = [[0.0; 2], *size].map(|[x, y]| sketch.place([(x - origin[0]) / scale, (origin[1] - y) / scale]));
+            let corner = |[x, y]: Point| sketch.place([(x - origin[0]) / scale, (origin[1] - y) / scale]);
+            let corners = [[0.0; 2], *size].map(|place| corner(place).map(|x| x.max(1.0))).map(|[x, y]| [x.min(width - 1.0), y]);
             sketch.group(r#"class="frame""#, |sketch| sketch.frame(corners, "3 3"));
         }
     });
@@ -362,10 +366,8 @@ impl<'a> Drawing<'a> {
     }
 
     /// The cracks and their ways, enlarged: the corner and size of the part in the picture, px, and the part.
-    fn detail(&self, [low, high]: [Point; 2], size: Size) -> (Point, Point, Sketch) {
-        let whole = [0.53 * size.width - 8.0, size.height - 24.0 - 2.0 * BELOW];
-        let room = 0.22 * (high[0] - low[0]).max(high[1] - low[1]).max(1e-6);
-        let part = [low.map(|x| x - room), high.map(|x| x + room)];
+    fn detail(&self, own: [Point; 2], size: Size) -> (Point, Point, Sketch) {
+        let (whole, part) = (beside_plate(size), around(own));
         let mut inner = middled(part, whole, [0.0; 2]);
         let frame = [whole[0], ((part[1][1] - part[0][1]) * inner.scale).max(0.55 * whole[0]).min(whole[1])];
         inner.origin = [0, 1].map(|i| inner.origin[i] + 0.5 * frame[i]);
@@ -373,6 +375,17 @@ impl<'a> Drawing<'a> {
         self.cracks(&mut inner, true);
         ([0.47 * size.width, 24.0 + 0.5 * (whole[1] - frame[1])], frame, inner)
     }
+}
+
+/// Most of an enlarged part, px.
+fn beside_plate(size: Size) -> Point {
+    [0.53 * size.width - 8.0, size.height - 24.0 - 2.0 * BELOW]
+}
+
+/// What is enlarged of cracks within a box.
+fn around([low, high]: [Point; 2]) -> [Point; 2] {
+    let room = 0.22 * (high[0] - low[0]).max(high[1] - low[1]).max(1e-6);
+    [low.map(|x| x - room), high.map(|x| x + room)]
 }
 
 pub fn colour(share: f64) -> String {
