@@ -71,17 +71,34 @@ function large(s) {
     element("p", { class: "quiet" }, errorWords(s) && `Numerical error: ${errorWords(s)}`)];
 }
 
-/** Lives of a fleet at 5, 50 and 95 % of its plates, in words. */
-export const fleetOf = ({ fleet: { life_cycles: { words: said } } }) => [said.p05, said.p50, said.p95].map((text) => (Number.isFinite(Number(text)) ? cycles(Math.round(Number(Number(text).toPrecision(4)))) : text));
+/** Cycles of a fleet at 5, 50 and 95 % of its plates, in words. */
+const quantileWords = ({ words: said }) => [said.p05, said.p50, said.p95].map((text) => (Number.isFinite(Number(text ?? NaN)) ? cycles(Math.round(Number(Number(text).toPrecision(4)))) : text ?? "unknown"));
+export const fleetOf = ({ fleet }) => quantileWords(fleet.life_cycles);
+
+/** Inspections of a fleet in words: {from, interval, left}; null where none were asked for. */
+export function inspectionsOf({ fleet: { inspections: looks }, passes, life_cycles: life }) {
+  if (!looks) return null;
+  const p05 = looks.detectable_to_critical_cycles.p05;
+  const every = looks.interval_cycles ?? (p05 === null ? null : p05 / looks.factor);
+  return {
+    from: `${significant(looks.detectable_mm, 4)} mm`, rule: `5 % remaining life of the fleet / ${looks.factor}`,
+    // Rounded down: an interval is a promise.
+    interval: every === null ? looks.detectable_to_critical_cycles.words.p05 ?? "unknown" : `${cycles(Math.floor(every))} cycles${inPasses(every, passes, life)}`,
+    left: quantileWords(looks.detectable_to_critical_cycles),
+  };
+}
+
+/** An interval in passes, under a spectrum. */
+export const inPasses = (every, passes, life) => (passes > 0 ? ` (${Math.floor((100 * every * passes) / life) / 100} passes)` : "");
 
 /** A fleet is its 5 % and median life; the run is one plate. */
 function ofFleet(s, run) {
   const [low, middle, high] = fleetOf(s);
-  const looks = s.fleet.inspections;
+  const looks = inspectionsOf(s);
   return [element("h2", null, "Life of the fleet, 5 % of plates"), element("p", { class: "life", "data-value": "fleet_p05" }, low, " ", element("small", null, "cycles")),
     element("p", { class: "beside" }, `Median ${middle}, 95 % ${high} cycles (${count(s.fleet.plates, "plate")})`),
-    looks && element("p", { class: "quiet" }, `Inspect from ${significant(looks.detectable_mm, 4)} mm every ${cycles(Math.floor(looks.interval_cycles ?? looks.detectable_to_critical_cycles.p05 / looks.factor))} cycles`),
-    element("p", { class: "quiet" }, `This run, the plate of the case alone: ${run} cycles`)];
+    looks && element("p", { class: "quiet" }, `Inspect from ${looks.from} every ${looks.interval}`),
+    element("p", { class: "quiet" }, `Life with nominal inputs: ${run} cycles`)];
 }
 
 function bandWords(s) {

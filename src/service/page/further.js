@@ -31,14 +31,18 @@ export const foundFurther = (job, { inspections: found, measured: own }, signal)
     [`From ${significant(own.crack_length_mm, 4)} mm at ${whole(own.cycles)} cycles`, leftWords(own)], ["Without readings", leftWords(own.of_lot)]], "readings"))] : []),
 ];
 
-/** The cards of analyses that the run has not; `inspection()` is that of the page. */
-export async function furtherCards(job, result, inspection) {
+/** Options by which the inspections of a result were asked for. */
+const ofResult = ({ inspection: one }) => one && { options: { inspect_from_mm: one.crack_length_mm, factor: one.factor, ...((one.tip ?? null) === null ? {} : { tip: one.tip }) } };
+
+/** The cards of analyses that the run has not; `inspection()` is that of the page, without it that of the result. */
+export async function furtherCards(job, result, inspection = () => ofResult(result)) {
   await loadKeys();
   const form = createForm(() => {});
   const { label, hint } = keyOf("fleet", "plates");
   const plates = form.number("fleet.plates", { label, hint, value: "1000" });
   const [half, most] = ["50", "90"].map((share) => form.number(`a${share}`, { label: `a${share}, found with ${share} %`, unit: unitShown("mm") }));
   const readings = form.file("measured", { label: "Readings" });
+  const detectable = form.number("inspect_from_mm", { label: "Detectable crack length", unit: unitShown("mm") });
 
   /** `wish()` gives {options, input, files}, or null where a field is missing. */
   function offer(name, text, fields, wish) {
@@ -61,7 +65,9 @@ export async function furtherCards(job, result, inspection) {
     !hasFile(job, "residual_strength.svg") && offer("residual strength", "Load the cracked plate can carry, over crack length.", [], () => ({ options: { residual_strength: true } })),
     !result.fleet && offer("fleet", "Life distribution: scatter of law, initial crack and load.", [plates],
       () => numberIn(plates) > 0 && { input: `${job.input}\n[fleet]\nplates = ${numberIn(plates)}\n` }),
-    !result.inspections && offer("detection", "Probability that all inspections miss the crack; interval as in Inspection.", [half, most], () => {
+    result.fleet && !result.fleet.inspections && offer("inspection interval", "Interval of the fleet: from a detectable crack to the end, 5 % of plates, divided by 3.", [detectable],
+      () => numberIn(detectable) > 0 && { options: { inspect_from_mm: numberIn(detectable) / inShown(1, "mm") } }),
+    !result.inspections && (inspection() || !result.fleet) && offer("detection", "Probability that all inspections miss the crack; interval as in Inspection.", [half, most], () => {
       const [from, lengths] = [inspection()?.options, [half, most].map((field) => numberIn(field) / inShown(1, "mm"))];
       return from && lengths.every((one) => one > 0) && { options: { ...from, pod: lengths.join(",") } };
     }),

@@ -13,7 +13,7 @@ import { problemBox } from "./notices.js";
 import { createPicture, filePicture, showBlob } from "./picture.js";
 import { createPlate } from "./plate.js";
 import { partThroughTerms, spectrumCard, spectrumTerms } from "./prediction_more.js";
-import { createRemaining } from "./remaining.js";
+import { createRemaining, fleetInspection } from "./remaining.js";
 import { reportButton } from "./report.js";
 import { curveChoices } from "./resample.js";
 import { levelShown, unitShown } from "./units.js";
@@ -163,11 +163,14 @@ export async function openPrediction(root, id, signal) {
     chart.set([...bandOf(columns, lengths), curve, ...(deep ? [deep] : []), ...limitsOf(result), endOf(columns.cycles, lengths)]);
     const factorChart = drawFactors(columns, lengths, lead ?? 0);
     if (done.state === "succeeded" && !result.refused && columns.cycles.at(-1) > 0) {
-      const place = createPlace({ columns, lengths, lead: lead ?? 0, band: quantilesOf(result), chart, factorChart, plate });
+      const place = createPlace({ columns, lengths, lead: lead ?? 0, band: quantilesOf(result), isOfFleet: Boolean(result.fleet), chart, factorChart, plate });
       outcome.append(place.node);
-      remaining = createRemaining(done, { columns, lengths, lead }, place.go, signal);
-      place.onLength(remaining.setLength);
-      below.prepend(remaining.node, ...foundFurther(done, result, signal), ...await furtherCards(done, result, remaining.wanted));
+      // The interval of a fleet is that of its plates, not of the one that was run.
+      if (!result.fleet) {
+        remaining = createRemaining(done, { columns, lengths, lead }, place.go, signal);
+        place.onLength(remaining.setLength);
+      }
+      below.prepend(...[remaining?.node ?? fleetInspection(result)].filter(Boolean), ...foundFurther(done, result, signal), ...await furtherCards(done, result, remaining?.wanted));
     }
   }
 
@@ -252,11 +255,11 @@ function howComputed(job, r) {
 }
 
 /** One place along the life that moves plate, curve and K. Gives {node, go(cycles), onLength(take)}. */
-function createPlace({ columns, lengths, lead, band, chart, factorChart, plate }) {
+function createPlace({ columns, lengths, lead, band, isOfFleet, chart, factorChart, plate }) {
   const steps = columns.cycles;
   const life = steps.at(-1);
   const cell = (name, wide) => [name, element("dd"), wide];
-  const cells = { a: cell("Crack length"), k: cell(["K", element("sub", null, "I"), " at maximum load"]), kk: cell(["K", element("sub", null, "II")], true), left: cell("Remaining life"), band: cell("Scatter band (90 %)", true) };
+  const cells = { a: cell("Crack length"), k: cell(["K", element("sub", null, "I"), " at maximum load"]), kk: cell(["K", element("sub", null, "II")], true), left: cell(isOfFleet ? "Remaining life, nominal inputs" : "Remaining life"), band: cell("Scatter band (90 %)", true) };
   const told = element("b");
   const share = element("span");
   const slider = element("input", { type: "range", id: "place", min: "0", max: String(STEPS), value: "0" });

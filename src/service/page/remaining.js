@@ -1,5 +1,6 @@
 // Remaining life from a crack length, and the inspection interval.
 
+import { inPasses, inspectionsOf } from "./answer.js";
 import { getJson } from "./api.js";
 import { debounce, element, show, terms } from "./dom.js";
 import { bandOf, cycles, deserved, fixed, parseNumber } from "./format.js";
@@ -8,6 +9,21 @@ import { problemBox } from "./notices.js";
 import { inShown, unitShown } from "./units.js";
 
 const WAIT_MS = 200;
+
+const cardOf = (...content) => element("section", { class: "card", "aria-labelledby": "remaining-title", "data-part": "remaining" },
+  element("h2", { id: "remaining-title" }, "Inspection"), ...content);
+
+/** The inspection of a fleet as it was computed: another length or factor is another run. Null where it was not asked for. */
+export function fleetInspection(result) {
+  const looks = inspectionsOf(result);
+  if (!looks) return null;
+  const [low, middle, high] = looks.left;
+  return cardOf(terms([
+    ["Detectable crack length", looks.from],
+    ["Remaining life from there", `${middle} cycles; 90 % of plates ${low} to ${high}`],
+    ["Inspection interval", [element("strong", { "data-value": "inspection_interval_cycles" }, looks.interval), ` (${looks.rule})`]],
+  ], "remaining"));
+}
 
 /** `go(cycles)` moves the place along the life. Gives {node, setLength(mm)}. */
 export function createRemaining(job, { columns, lengths: ofLead, lead }, go, signal) {
@@ -47,7 +63,6 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
       if (document.activeElement === length) go(got.cycles_at);
       // Under a spectrum an interval is planned in passes.
       const { passes, life_cycles: life } = job.summary ?? {};
-      const inPasses = passes > 0 ? ` (${Math.floor((100 * got.inspection_interval_cycles * passes) / life) / 100} passes)` : "";
       const value = (key, text) => element("strong", { "data-value": key }, `${text} cycles`);
       const band = got.has_band ? [got.remaining_cycles_p05, got.remaining_cycles_p50, got.remaining_cycles_p95] : null;
       show(answer, terms([
@@ -55,7 +70,7 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
         ["Band", band ? `median; ${bandOf(band)}` : "no band"],
         // Rounded down: an interval is a promise.
         ["Inspection interval", element("span", null, value("inspection_interval_cycles",
-          band ? deserved(got.inspection_interval_cycles, band, Math.floor) : cycles(Math.floor(got.inspection_interval_cycles))), inPasses)],
+          band ? deserved(got.inspection_interval_cycles, band, Math.floor) : cycles(Math.floor(got.inspection_interval_cycles))), inPasses(got.inspection_interval_cycles, passes, life))],
         ["Life used", `${cycles(Math.round(got.cycles_at))} of ${cycles(Math.round(got.life_cycles))} cycles`],
       ], "remaining"));
     } catch (error) {
@@ -89,14 +104,12 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
   tell();
   ask();
 
-  const node = element("section", { class: "card", "aria-labelledby": "remaining-title", "data-part": "remaining" },
-    element("h2", { id: "remaining-title" }, "Inspection"),
-    element("div", { class: "columns" },
-      element("div", { class: "fields" },
-        choice && field("Crack tip", "", choice),
-        field("Current crack length", unitShown("mm"), length, hint),
-        field("Inspection factor", "", factor, element("p", { class: "hint" }, "interval = 5 % remaining life / factor (median if no band)"))),
-      answer));
+  const node = cardOf(element("div", { class: "columns" },
+    element("div", { class: "fields" },
+      choice && field("Crack tip", "", choice),
+      field("Current crack length", unitShown("mm"), length, hint),
+      field("Inspection factor", "", factor, element("p", { class: "hint" }, "interval = 5 % remaining life / factor (median if no band)"))),
+    answer));
   return {
     node, wanted,
     /** The slider has moved: of the tip that ends the life. */
