@@ -4,7 +4,7 @@ import { getBlob } from "./api.js";
 import { createEditor } from "./editor.js";
 import { byId, show } from "./dom.js";
 import { EXAMPLE_NAME, EXAMPLE_TEST, exampleCsv } from "./example.js";
-import { compact, createForm, fillIn, grid, group, tell } from "./form.js";
+import { compact, createForm, fillIn, grid, group, tellUntilEdited } from "./form.js";
 import { jobToStartFrom } from "./job.js";
 import { createFields } from "./key_fields.js";
 import { hasOnly, keysOf } from "./keys.js";
@@ -72,15 +72,21 @@ export function createCalibrateView(materials) {
     if (!file?.text || file.name === noted) return;
     noted = file.name;
     const { kind, material: of, stress_ratio: ratio, ...sizes } = preambleOf(file.text, materials);
+    const from = `read from ${file.name}`;
     if (kind) specimen.choose(kind);
     for (const [metric, value] of Object.entries(sizes)) {
       const field = specimen.field(metric);
       if (value === undefined || !field || field.touched) continue;
       field.write(value);
-      tell(field, `read from ${file.name}`);
+      tellUntilEdited(field, from);
     }
-    loading.propose({ stress_ratio: ratio });
-    if (of && material.fill({ name: of })) tell(material.name, `read from ${file.name}`);
+    // Loads of the readings have their own.
+    if (measured.loading().stress_ratio === undefined) loading.propose({ stress_ratio: ratio }, from);
+    // No material stands in for one that the library has not.
+    if (of.stated && !material.name.touched) {
+      material.fill({ name: of.name ?? "" });
+      tellUntilEdited(material.name, !of.name ? `Material in the file: ${of.stated}; choose one` : of.orientation ? `${from}; no record of orientation ${of.orientation}` : from);
+    }
     arrange();
   }
 
@@ -101,7 +107,8 @@ export function createCalibrateView(materials) {
     if (range && !from.touched) from.write(range[0]);
     if (range && !to.touched) to.write(range[1]);
     if (range) proposeLength();
-    loading.propose(measured.loading());
+    const names = measured.names();
+    loading.propose(measured.loading(), `read from ${names.length > 1 ? `${names.length} files` : names[0]}`);
     proposeNoted();
     editor.check.soon();
   });
@@ -145,6 +152,8 @@ export function createCalibrateView(materials) {
     const isMeasured = ({ name: own }) => job.case.measured.files.includes(own);
     form.offer(files.filter((one) => !isMeasured(one)));
     const isShown = fillAll(job.case);
+    // What was submitted is not proposed again.
+    noted = job.case.measured.files[0];
     await measured.load(files.filter(isMeasured), job.case.measured);
     fillIn(name, job.name);
     if (!isShown) editor.start(job.input);

@@ -163,6 +163,18 @@ export function tell(field, text = "") {
   field.note.hidden = text === "";
 }
 
+/** The line below a field until its value changes. */
+export function tellUntilEdited(field, text) {
+  field.hint ??= field.note.textContent;
+  tell(field, text);
+  field.input.addEventListener("input", () => untell(field), { once: true });
+}
+
+/** The line that a field has of its own. */
+export function untell(field) {
+  if (field.hint !== undefined) tell(field, field.hint);
+}
+
 /** Number in a field, undefined where it is empty or none. */
 export function numberIn(field) {
   const value = parseNumber(field.input.value);

@@ -1,7 +1,7 @@
 // Fields made from keys: what a section of the input file takes, as fields of a form and back.
 
 import { button, element, show } from "./dom.js";
-import { compact, fillIn, grid, group, need, numberIn, numbersIn, tell } from "./form.js";
+import { compact, fillIn, grid, group, need, numberIn, numbersIn, tell, untell } from "./form.js";
 import { hasOnly, toShown } from "./keys.js";
 
 const text = ({ input }) => input.value.trim() || undefined;
@@ -43,6 +43,7 @@ export function fieldOf(form, path, key, more) {
   const write = (value, table) => {
     if (field.pick) field.pick(value);
     else fillIn(field, toShown(key, value, table));
+    untell(field);
     meaning();
   };
   return Object.assign(field, { key, write, read: () => (READ[key.shape] ?? text)(field), drop: () => form.drop([field]) });

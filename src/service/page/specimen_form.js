@@ -1,7 +1,7 @@
 // Specimen, material and loading of a test or a plate, from their keys.
 
 import { element, show } from "./dom.js";
-import { compact, need, tell } from "./form.js";
+import { compact, need, tell, tellUntilEdited, untell } from "./form.js";
 import { plain } from "./format.js";
 import { createFields, fieldOf } from "./key_fields.js";
 import { choicesOf, keyOf, keysOf, traitsOf } from "./keys.js";
@@ -116,6 +116,7 @@ export function createMaterial(form, materials) {
     fill({ name: wanted = "", ...constants }) {
       if (wanted && !materials.some((one) => one.name === wanted)) return false;
       name.input.value = wanted;
+      untell(name);
       const isWhole = fields.fill(constants);
       arrange();
       return isWhole;
@@ -172,15 +173,18 @@ export function createLoading(form, { sides, plate, spectrum } = {}) {
 
   return {
     element: root,
-    /** The load of the readings or the ratio of a law, unless the user typed any. */
-    propose({ stress_ratio: given, ...load }) {
+    /** The load of the readings or the ratio of a law, unless the user typed any; `from` says where it is from. */
+    propose({ stress_ratio: given, ...load }, from) {
       const [[metric, value] = []] = Object.entries(load);
       if (metric && !magnitude?.touched && !quantity.touched && magnitudes.some((key) => key.metric === metric)) {
         quantity.input.value = metric;
         draw();
         magnitude.write(value);
+        if (from) tellUntilEdited(magnitude, from);
       }
-      if (given !== undefined && !ratio.touched) ratio.write(given);
+      if (given === undefined || ratio.touched) return;
+      ratio.write(given);
+      if (from) tellUntilEdited(ratio, from);
     },
     /** Specimens on pins or rollers take no stress. */
     suit(kind) {

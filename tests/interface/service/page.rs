@@ -23,6 +23,10 @@ const END: char = '\u{e010}';
 const BROKEN: &str = "specimen,cycles,crack_length_mm\nA1,0,9\nA1,12000,9.6\nA1,21000,10.2\nA1,many,10.9\nA1,39000,11.7\n\
     A1,4100,12.4\nA1,47000,13.3\nA1,60000,14.4\nA1,66000,15\n<img src=x onerror=alert(1)>,-1,9\nA1,99000,20\n";
 
+/// Readings with the loads of each.
+const LOADED: &str =
+    "cycles,a_mm,Pmax_kN,Pmin_kN\n0,11.0,2.80,0.28\n7000,11.42,2.80,0.28\n13600,11.84,2.80,0.28\n19640,12.3,2.80,0.28\n";
+
 /// Every visible field has a name, every picture words, every table a caption; nothing is wider than the window, and on a phone
 /// everything is large enough for a finger.
 const FLAWS: &str = r#"
@@ -123,6 +127,26 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.see("[data-file='dropped.csv']");
     assert!(page.text("[data-file='dropped.csv']").contains("decimal commas"));
     page.click("[aria-label='Remove dropped.csv']");
+    // What a laboratory notes above its table: a material that the library has not leaves none, loads of the readings have their own R.
+    for (noted, material, said) in [
+        ("Material,Inconel 718", "", "Material in the file: Inconel 718; choose one"),
+        ("Werkstoff: EN AW-2024 T3\nRissebene: T-L", "al2024-t3-clad-tl", "read from noted"),
+        ("Material: AA 7075-T651\nOrientation: T-L", "al7075-t651-sheet-lt", "no record of orientation T-L"),
+    ] {
+        let name = format!("noted_{}.csv", material.len());
+        let file = dir.path().join(&name);
+        fs::write(&file, format!("R,0.5\n{noted}\nW,50,mm\n{LOADED}")).unwrap();
+        page.fill("#measured-input", file.to_str().unwrap());
+        page.until(&format!("document.querySelector('#test-fields').innerText.includes('{said}')"));
+        let value = |key: &str| page.run(&format!("return document.querySelector(\"#test-fields [data-key='{key}']\").value"));
+        assert_eq!((value("material.name"), value("loading.stress_ratio")), (material.into(), "0.1".into()), "{noted}");
+        assert_eq!(
+            page.text("#test-fields").matches(&format!("read from {name}")).count(),
+            if material.is_empty() { 3 } else { 4 }
+        );
+        page.click(&format!("[aria-label='Remove {name}']"));
+        page.until("document.querySelector('#measured').dataset.measured === 'empty'");
+    }
 
     // A good file, the test it is of, a fit.
     page.click("#example");
