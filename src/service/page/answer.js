@@ -137,6 +137,15 @@ export const line = (check) => element("li", { "data-check": check.name, "data-v
   mark(OF_VERDICT[check.verdict] ?? "note")[0],
   element("span", null, mark(OF_VERDICT[check.verdict] ?? "note")[1], sentence(check.words), check.remedy && element("span", { class: "quiet" }, ` – ${check.remedy}`)));
 
+/** Growth at an end of the tested ΔK against the law, percent, beyond which a life is cautioned: as `lack_of_fit` of a result has it. */
+const MISFIT_CAUTION = 5;
+
+/** Mark of a law by its misfit at its ends, percent; undefined where none is known. */
+export const kindOfMisfit = (...ends) => ends.length > 0 ? (ends.some((percent) => Math.abs(percent) > MISFIT_CAUTION) ? "note" : "ok") : undefined;
+
+/** Misfits of a law at those ends where they are known, percent. */
+export const misfitsOf = ({ misfit_at_ends: ends }) => [ends?.low, ends?.high].filter(Boolean).map((at) => at.rate_over_law_percent);
+
 /** Mark of a verdict. */
 export const kindOfVerdict = (kind) => ({ valid: "ok", not_valid: "bad" })[kind] ?? "note";
 

@@ -1,6 +1,6 @@
 // Page of one calibration: readings and fit, constants with their errors, files.
 
-import { mark } from "./answer.js";
+import { kindOfMisfit, mark } from "./answer.js";
 import { getJson, getText } from "./api.js";
 import { createChart } from "./chart.js";
 import { element, readCsv, section, show, showPage, table, terms } from "./dom.js";
@@ -169,7 +169,7 @@ function lawCard(s) {
         ["Fit error", `${percent(s.rms_life_error, 2)} rms of life`]].filter(Boolean), "exponent")),
     element("div", null, element("h2", null, "Validity"),
       element("p", { class: "verdict" }, `For ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 4)} to ${significant(s.delta_k_max_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`),
-      element("ul", { class: "checks" }, remarks.map(([name, text]) => element("li", null, mark("note")[0], element("span", null, mark("note")[1], element("b", null, `${name}: `), text))))));
+      element("ul", { class: "checks" }, remarks.map(([name, text, kind]) => element("li", { "data-mark": kind }, mark(kind)[0], element("span", null, mark(kind)[1], element("b", null, `${name}: `), text))))));
 }
 
 function constants(s) {
@@ -209,7 +209,7 @@ function misfit({ low = null, high = null } = {}) {
     const [faster, longer] = share < 0 ? ["slower", "short"] : ["faster", "long"];
     const range = `ΔK ${significant(at.delta_k_from_mpa_sqrt_m, 4)} to ${significant(at.delta_k_to_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`;
     const size = percent(Math.abs(share), 1);
-    return [name, `measured growth ${size} ${faster} than the law at ${range}; life there ${size} too ${longer} (${longer === "short" ? "conservative" : "non-conservative"})`];
+    return [name, `measured growth ${size} ${faster} than the law at ${range}; life there ${size} too ${longer} (${longer === "short" ? "conservative" : "non-conservative"})`, kindOfMisfit(at.rate_over_law_percent)];
   };
   return [["First readings", low], ["Last readings", high]].filter(([, at]) => at).map(([name, at]) => end(name, at));
 }

@@ -1,6 +1,6 @@
 // List of all runs with their answers: opened, renamed, noted, duplicated, archived, cancelled, deleted; lives are ticked to compare them.
 
-import { fleetOf, kindOfVerdict, lifeShown, mark, quantilesOf } from "./answer.js";
+import { fleetOf, kindOfMisfit, kindOfVerdict, lifeShown, mark, misfitsOf, quantilesOf } from "./answer.js";
 import { getJson } from "./api.js";
 import { button, byId, debounce, element, show } from "./dom.js";
 import { bandOf, count, cycles, duration, fixed, moment, percent, scientific, sentence, significant, words } from "./format.js";
@@ -221,8 +221,9 @@ function answerOf({ kind, state, progress, problem, summary: s, ...job }) {
       sentence(words(s.stop_reason)), s.verdict_kind && sign(kindOfVerdict(s.verdict_kind), s.verdict.split(":")[0])];
   }
   if (kind === "calibration" && s.paris_m) {
+    const fit = kindOfMisfit(...misfitsOf(s));
     const range = `ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 3)} to ${significant(s.delta_k_max_mpa_sqrt_m, 3)}`;
-    return [two(`m ${fixed(s.paris_m, 2)}`, `${scientific(s.rate_at_pivot_mm_per_cycle, 3)} mm/cycle at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 3)}`), "", sign("ok", range)];
+    return [two(`m ${fixed(s.paris_m, 2)}`, `${scientific(s.rate_at_pivot_mm_per_cycle, 3)} mm/cycle at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 3)}`), "", fit ? sign(fit, range) : range];
   }
   const factors = (s.tips ?? []).flatMap((tip) => Object.values(tip.methods ?? {})).filter((read) => Number.isFinite(read.k_i_mpa_sqrt_m));
   if (kind === "sif" && factors.length > 0) {
