@@ -1,7 +1,7 @@
 // The answer of a prediction in one card: the life with its band, what ends it, validity.
 
 import { element, shape, terms } from "./dom.js";
-import { bandOf, count, cycles, deserved, fixed, sentence, significant, words } from "./format.js";
+import { bandOf, bandOfError, count, cycles, deserved, fixed, sentence, significant, words } from "./format.js";
 
 const CHECKS_SHOWN = 5;
 /** What the number is, by the reason of the end. */
@@ -48,11 +48,15 @@ export function lengthsOf(s) {
   return [of.crack_length_initial_mm, of.crack_length_final_mm];
 }
 
-/** The life with as many digits as its band leaves, or its numerical error without one. */
+/** Cycles of a run without a band in the digits of its life. */
+export const byError = (value, s, toWhole, of) => deserved(value, bandOfError(s.error_estimate_percent), toWhole, of);
+
+/** The life with as many digits as its band leaves, or its numerical error without one; in words where it has no end, or none that counts. */
 export function lifeShown(s) {
-  const error = (s.error_estimate_percent ?? 0) / 100;
-  const spread = quantilesOf(s) ?? (error > 0 ? [1 - error, 1, 1 + error].map((share) => share * s.life_cycles) : null);
-  return `${s.life_is_lower_bound ? "≥ " : ""}${spread ? deserved(spread[1], spread) : cycles(Math.round(s.life_cycles))}`;
+  if (s.refused) return "none";
+  if (s.life_cycles === null) return "unlimited";
+  const band = quantilesOf(s);
+  return `${s.life_is_lower_bound ? "≥ " : ""}${band ? deserved(band[1], band) : byError(s.life_cycles, s)}`;
 }
 
 function large(s) {

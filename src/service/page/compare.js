@@ -1,10 +1,10 @@
 // Several predictions side by side: lives with their bands on one axis, what differs in their inputs, all curves in one chart.
 
-import { bar, kindOfVerdict, mark, quantilesOf } from "./answer.js";
+import { bar, kindOfVerdict, lifeShown, mark, quantilesOf } from "./answer.js";
 import { getJson, getText } from "./api.js";
 import { createChart } from "./chart.js";
 import { element, readCsv, section, showPage, table } from "./dom.js";
-import { NONE, cycles, deserved, fixed, lifeOf, plain, sentence, significant, words } from "./format.js";
+import { NONE, cycles, fixed, plain, sentence, significant, words } from "./format.js";
 import { hrefOf, nameOf, pathOf } from "./job.js";
 import { keysOf, loadKeys, toShown } from "./keys.js";
 import { COMPARE_MAX } from "./runs.js";
@@ -96,7 +96,7 @@ function tableOf(jobs) {
   const rows = jobs.map((job, index) => {
     const s = job.summary;
     const beside = index > 0 && lives[index] && lives[0] ? [significant(lives[index] / lives[0], 3), inScatter(lives[index]) && element("span", { class: "row-unit" }, "in scatter")] : "–";
-    return [[element("b", null, letterOf(index)), " ", element("a", { href: hrefOf(job) }, nameOf(job))], bands[index] ? deserved(bands[index][1], bands[index]) : lifeOf(s), beside,
+    return [[element("b", null, letterOf(index)), " ", element("a", { href: hrefOf(job) }, nameOf(job))], lifeShown(s), beside,
       bands[index] ? bar(bands[index], ends) : "no band", words(s.stop_reason), s.verdict_kind ? [mark(kindOfVerdict(s.verdict_kind)), " ", s.verdict.split(":")[0]].flat() : ""];
   });
   return table("Lives of the compared predictions", columns, rows, { hidden: true, name: "compare" });

@@ -57,24 +57,26 @@ export function powerOf(exponent) {
   return String(exponent).replace(/./g, (sign) => SUPERSCRIPT[sign]);
 }
 
-/** The life of a summary: cycles, at least so many where the plate lives on, that it has no end, or none that counts. */
-export function lifeOf(summary) {
-  if (summary.refused) return "none";
-  if (summary.life_cycles === null) return "unlimited";
-  return `${summary.life_is_lower_bound ? "≥ " : ""}${cycles(Math.round(summary.life_cycles))}`;
-}
-
 /** Cycles: whole above a hundred, else with decimals. */
 export function cycles(value) {
   return Math.abs(value) >= 100 || Number.isInteger(value) ? whole(value) : significant(value, 3);
 }
 
-/** Cycles with the digits that their band deserves: two where its half width is above 10 %, three above 1 %, else four. */
-export function deserved(value, [low, middle, high], toWhole = Math.round) {
+/** Cycles with the digits that their band deserves: two where its half width is above 10 %, three above 1 %, else four; with those of `of` where it is given. */
+export function deserved(value, [low, middle, high], toWhole = Math.round, of = value) {
   const half = (high - low) / 2 / middle;
   const digits = half > 0.1 ? 2 : half > 0.01 ? 3 : 4;
-  const unit = 10 ** (Math.floor(Math.log10(value)) + 1 - digits);
+  const unit = 10 ** (Math.floor(Math.log10(of)) + 1 - digits);
   return value > 0 ? cycles(Number((toWhole(value / unit) * unit).toPrecision(12))) : "0";
+}
+
+/** Half width of a life of which no error is stated, percent. */
+const UNSTATED = 1;
+
+/** The band that the stated error of a life, percent, leaves it. */
+export function bandOfError(percent) {
+  const half = (percent ?? UNSTATED) / 100;
+  return [1 - half, 1, 1 + half];
 }
 
 /** The ends of a band in words. */

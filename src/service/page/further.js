@@ -1,8 +1,9 @@
 // Further analyses of a prediction. A result never changes: each is a run of the same input with an option of its own.
 
+import { inPasses, inspectionsOf } from "./answer.js";
 import { button, element, section, show, terms } from "./dom.js";
 import { createForm, grid, numberIn } from "./form.js";
-import { bandOf, deserved, significant, whole } from "./format.js";
+import { bandOf, cycles, deserved, fixed, significant, whole } from "./format.js";
 import { filesOf, nameOf } from "./job.js";
 import { keyOf, loadKeys } from "./keys.js";
 import { problemBox } from "./notices.js";
@@ -20,13 +21,27 @@ function leftWords({ remaining_cycles_p05: low, remaining_cycles_p50: middle, re
   return `${deserved(middle, [low, middle, high])} cycles; ${bandOf([low, middle, high])}`;
 }
 
+/** A probability; no POD curve supports a smaller one than 0.001. */
+const chance = (value) => (value < 1e-3 ? "< 0.001" : significant(value, 2));
+
+/** When the crack is looked for: as the interval of the inspection, rounded down. */
+function inspectionWords(found, { inspection: from, passes, life_cycles: life, fleet }) {
+  const looks = fleet?.inspections;
+  if (looks) return `first after ${cycles(Math.round(looks.first_inspection_cycles))} cycles, then every ${inspectionsOf({ fleet, passes, life_cycles: life }).interval}`;
+  const every = found.interval_cycles;
+  const band = from?.has_band && [from.remaining_cycles_p05, from.remaining_cycles_p50, from.remaining_cycles_p95];
+  const rounded = band ? deserved(every, band, Math.floor) : cycles(Math.floor(every));
+  const tip = (from?.tip ?? null) === null ? "" : ` (tip ${from.tip})`;
+  return `${found.rows.length}${from ? `, from ${fixed(from.crack_length_mm, 2)} mm${tip}` : ""}, every ${rounded} cycles${inPasses(every, passes, life)}`;
+}
+
 /** What further analyses found: their pictures and figures. */
-export const foundFurther = (job, { inspections: found, measured: own }, signal) => [
+export const foundFurther = (job, { inspections: found, measured: own, ...result }, signal) => [
   ...Object.entries(PICTURES).filter(([file]) => hasFile(job, file)).map(([file, title]) => card(file.replace(".svg", ""), title, filePicture(job, file, title, signal))),
   ...(found ? [card("detection", "Detection", terms([
-    ["All inspections miss", `probability ${found.missed < 1e-3 ? "< 0.001" : significant(found.missed, 2)} (independence assumed)`],
+    ["All inspections miss", `probability ${chance(result.fleet?.missed ?? found.missed)} (${result.fleet ? "mean of the fleet; " : ""}independence assumed)`],
     ["POD", `a50 ${significant(found.a50_mm, 3)} mm, a90 ${significant(found.a90_mm, 3)} mm`],
-    ["Inspections", `${found.rows.length}, every ${whole(found.interval_cycles)} cycles`]], "detection"))] : []),
+    ["Inspections", inspectionWords(found, result)]], "detection"))] : []),
   ...(own ? [card("readings", "Remaining life by readings of this plate", terms([
     [`From ${significant(own.crack_length_mm, 4)} mm at ${whole(own.cycles)} cycles`, leftWords(own)], ["Without readings", leftWords(own.of_lot)]], "readings"))] : []),
 ];

@@ -1,6 +1,6 @@
 // Page of one prediction: the answer first, then one place along the life for plate, curve and K. While it runs, curve and path grow.
 
-import { answerCard, errorWords, leadOf, quantilesOf } from "./answer.js";
+import { answerCard, byError, errorWords, leadOf, quantilesOf } from "./answer.js";
 import { getBlob, getJson, getText, postInput } from "./api.js";
 import { createChart } from "./chart.js";
 import { warningList } from "./check.js";
@@ -163,7 +163,7 @@ export async function openPrediction(root, id, signal) {
     chart.set([...bandOf(columns, lengths), curve, ...(deep ? [deep] : []), ...limitsOf(result), endOf(columns.cycles, lengths)]);
     const factorChart = drawFactors(columns, lengths, lead ?? 0);
     if (done.state === "succeeded" && !result.refused && columns.cycles.at(-1) > 0) {
-      const place = createPlace({ columns, lengths, lead: lead ?? 0, band: quantilesOf(result), isOfFleet: Boolean(result.fleet), chart, factorChart, plate });
+      const place = createPlace({ columns, lengths, lead: lead ?? 0, result, chart, factorChart, plate });
       outcome.append(place.node);
       // The interval of a fleet is that of its plates, not of the one that was run.
       if (!result.fleet) {
@@ -255,11 +255,12 @@ function howComputed(job, r) {
 }
 
 /** One place along the life that moves plate, curve and K. Gives {node, go(cycles), onLength(take)}. */
-function createPlace({ columns, lengths, lead, band, isOfFleet, chart, factorChart, plate }) {
+function createPlace({ columns, lengths, lead, result, chart, factorChart, plate }) {
+  const band = quantilesOf(result);
   const steps = columns.cycles;
   const life = steps.at(-1);
   const cell = (name, wide) => [name, element("dd"), wide];
-  const cells = { a: cell("Crack length"), k: cell(["K", element("sub", null, "I"), " at maximum load"]), kk: cell(["K", element("sub", null, "II")], true), left: cell(isOfFleet ? "Remaining life, nominal inputs" : "Remaining life"), band: cell("Scatter band (90 %)", true) };
+  const cells = { a: cell("Crack length"), k: cell(["K", element("sub", null, "I"), " at maximum load"]), kk: cell(["K", element("sub", null, "II")], true), left: cell(result.fleet ? "Remaining life, nominal inputs" : "Remaining life"), band: cell("Scatter band (90 %)", true) };
   const told = element("b");
   const share = element("span");
   const slider = element("input", { type: "range", id: "place", min: "0", max: String(STEPS), value: "0" });
@@ -287,7 +288,7 @@ function createPlace({ columns, lengths, lead, band, isOfFleet, chart, factorCha
     show(cells.k[1], Number.isFinite(k) ? unit(fixed(k, 1), "MPa√m") : "not read");
     show(cells.kk[1], Number.isFinite(kk) ? unit(fixed(kk, 1), "MPa√m") : "not read");
     const quantiles = band && ["05", "50", "95"].map((name) => value(columns[`remaining_cycles_p${name}`], here));
-    show(cells.left[1], unit(quantiles?.[1] > 0 ? deserved(quantiles[1], quantiles) : cycles(Math.round(life - here)), "cycles"));
+    show(cells.left[1], unit(quantiles?.[1] > 0 ? deserved(quantiles[1], quantiles) : byError(life - here, result), "cycles"));
     show(cells.band[1], quantiles?.[1] > 0 ? `${deserved(quantiles[0], quantiles)} to ${deserved(quantiles[2], quantiles)}` : "no band");
     slider.setAttribute("aria-valuetext", `${cycles(Math.round(here))} cycles, crack length ${fixed(a, 2)} mm`);
     if (document.activeElement !== slider || !isOwn) slider.value = String(Math.round((STEPS * here) / life));
