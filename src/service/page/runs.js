@@ -4,7 +4,7 @@ import { fleetOf, kindOfMisfit, kindOfVerdict, lifeShown, mark, misfitsOf, quant
 import { getJson } from "./api.js";
 import { button, byId, debounce, element, show } from "./dom.js";
 import { bandOf, count, cycles, duration, fixed, moment, percent, scientific, sentence, significant, words } from "./format.js";
-import { cancelJob, changeJob, confirmDelete, editInPlace, hrefOf, isFinal, nameOf, openForm, stateBadge } from "./job.js";
+import { cancelJob, changeJob, confirmDelete, describe, editInPlace, hrefOf, isFinal, nameOf, openForm, stateBadge } from "./job.js";
 import { problemBox } from "./notices.js";
 
 const PAGE = 50;
@@ -98,7 +98,7 @@ export function createRunsView() {
     const [answer, why, valid] = answerOf(job);
     return element("tr", { "data-job": job.id, "data-job-state": job.state, class: job.archived ? "archived" : null },
       predictions && element("td", { class: "tick" }, job.kind === "prediction" && tick(job)),
-      element("th", { scope: "row" }, name, element("span", { class: "row-unit" }, NOUNS[job.kind] ?? words(job.kind), job.archived && ", archived"), note),
+      element("th", { scope: "row" }, name, element("span", { class: "row-unit" }, describe(job.summary ?? {})), element("span", { class: "row-unit" }, NOUNS[job.kind] ?? words(job.kind), job.archived && ", archived"), note),
       element("td", null, answer), element("td", null, why), element("td", null, valid),
       element("td", { class: "by" }, job.owner && `${job.owner}, `, moment(job.created, true), Number.isFinite(took(job)) && element("span", { class: "row-unit" }, `took ${duration(took(job))}`)),
       element("td", { class: "act" }, menuOf(job, name, note)));

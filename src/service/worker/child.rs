@@ -156,9 +156,7 @@ fn run_task(folder: &Path, task: &Task, from: Option<TaskCheckpoint>, teller: &T
     // The stresses that go with factors are for a folder that was asked for.
     let is_of_factors = matches!(task, Task::Factors { .. });
     let summary = perilife_runner::run(task, from, (!is_of_factors).then_some(folder), teller)?;
-    if is_of_factors {
-        write_json(folder, RESULT_FILE, &summary.result)?;
-    }
+    is_of_factors.then(|| write_json(folder, RESULT_FILE, &summary.result)).transpose()?;
     // A run of cycles that is refused is shown as such.
     let summary = if matches!(task, Task::Prediction { .. }) { summary } else { summary.counted()? };
     // A report of what cannot be read again is no reason to lose the run.
@@ -167,7 +165,9 @@ fn run_task(folder: &Path, task: &Task, from: Option<TaskCheckpoint>, teller: &T
         write_file(&folder.join(REPORT_FILE), paper::html(&source, &Signed::default()).as_bytes())?;
     }
     packed(folder)?;
-    Ok(summary.figures)
+    let mut figures = summary.figures; // and what a listing says of the plate
+    figures["plate"] = Value::from_iter(["specimen", "material", "load"].map(|key| (key, summary.result["plate"][key].clone())));
+    Ok(figures)
 }
 
 /// Entries of a growing curve from its start to its end: as many as a picture of it can show.
