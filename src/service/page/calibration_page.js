@@ -84,9 +84,22 @@ function scatterBand(quantiles) {
     x: quantiles[low], y: quantiles.crack_length_mm, x2: quantiles[high], y2: quantiles.crack_length_mm }];
 }
 
-/** Readings that were not fitted: those outside the fit window as thin marks, excluded ones crossed out. */
+/** Cycles at which the window of every specimen starts in its file: by its readings that the fit has, which counts from there. */
+function startsOf(readings, fit) {
+  const starts = new Map();
+  readings.specimen.forEach((name, row) => {
+    if (readings.left_out?.[row] || starts.has(name)) return;
+    const at = fit.specimen.findIndex((own, index) => own === name && Math.abs(fit.crack_length_mm[index] - readings.crack_length_mm[row]) < 1e-6);
+    if (at >= 0) starts.set(name, readings.cycles[row] - fit.cycles_measured[at]);
+  });
+  return starts;
+}
+
+/** Readings that were not fitted, in cycles from the start of the window as the fit: those outside it as thin marks, excluded ones crossed out. */
 function leftOut(readings, fit) {
-  const out = (readings?.cycles ?? []).map((_, row) => [readings.cycles[row], readings.crack_length_mm[row]]).filter((_, row) => readings.left_out?.[row]);
+  const starts = readings ? startsOf(readings, fit) : new Map();
+  const out = (readings?.cycles ?? []).map((_, row) => readings.left_out?.[row] && [readings.cycles[row] - starts.get(readings.specimen[row]), readings.crack_length_mm[row]])
+    .filter((point) => point && point.every(Number.isFinite));
   const [from, to] = [Math.min(...fit.crack_length_mm), Math.max(...fit.crack_length_mm)];
   const isOutside = ([, a]) => a < from - 1e-9 || a > to + 1e-9;
   const series = (id, name, more, points) => points.length > 0 && { id, name, ...more, x: points.map((point) => point[0]), y: points.map((point) => point[1]) };
