@@ -12,6 +12,11 @@ const POINTER_REACH = 48;
 /** Lines that are named at their ends; more of them are named above the chart. */
 const NAMED_AT_ENDS = 4;
 
+/** Digits of ticks on a logarithmic axis of more than so many decades, as reports and files have them. */
+const TICKS = [[3, [1]], [1.5, [1, 2, 5]], [0.7, [1, 1.5, 2, 3, 4, 5, 7]], [-Infinity, [1, 1.2, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 9]]];
+/** Room at the ends of a logarithmic axis, as there. */
+const LOG_ROOM = 1.12;
+
 const tone = (one) => `tone-${(one.tone ?? 0) % TONES}`;
 const finite = ([x, y]) => Number.isFinite(x + y);
 
@@ -21,19 +26,20 @@ function lowered(text) {
   return low ? [head, shape("tspan", { dy: "0.3em", "font-size": "0.75em" }, low)] : [text];
 }
 
-/** Ticks at 1, 2 and 5, or at every digit where these are few. */
+/** Ticks of a logarithmic axis. */
 function logTicks([low, high]) {
+  const decades = Math.log10(high / low);
+  const [, digits] = TICKS.find(([above]) => decades > above);
   const powers = Array.from({ length: Math.ceil(Math.log10(high / low)) + 2 }, (_, index) => Math.floor(Math.log10(low)) + index);
-  const at = (digits) => powers.flatMap((power) => digits.map((digit) => Number(`${digit}e${power}`))).filter((value) => value >= low && value <= high);
-  const some = at([1, 2, 5]);
-  return some.length > 2 ? some : at([1, 2, 3, 4, 5, 6, 7, 8, 9]);
+  return powers.flatMap((power) => digits.map((digit) => Number(`${digit}e${power}`))).filter((value) => value >= low && value <= high);
 }
 
 /** A tick; powers of ten on a logarithmic axis that has such ends. */
 function tickText(value, scale, [low, high]) {
   const far = scale === "log" && (low < 0.001 || high >= 1e5);
   if (!far) return Math.abs(value) >= 1e4 ? whole(value) : plain(value, 6);
-  const [mantissa, exponent] = value.toExponential(0).split("e");
+  const [digits, exponent] = value.toExponential(2).split("e");
+  const mantissa = plain(Number(digits));
   return `${mantissa === "1" ? "" : `${mantissa}·`}10${powerOf(Number(exponent))}`;
 }
 
@@ -46,7 +52,7 @@ function domainOf(values, axis) {
     high = Math.max(high, value);
   }
   if (low > high) [low, high] = axis.scale === "log" ? [1, 10] : [0, 1];
-  if (axis.scale === "log") return [low / 1.08, Math.max(high, 1.2 * low) * 1.08];
+  if (axis.scale === "log") return [low / LOG_ROOM, Math.max(high, 1.2 * low) * LOG_ROOM];
   if (low === high) [low, high] = [low - Math.max(1, 0.1 * Math.abs(low)), high + Math.max(1, 0.1 * Math.abs(high))];
   if (axis.from === undefined && low >= 0 && low < 0.25 * high) low = 0;
   return [low, high];
