@@ -1,7 +1,8 @@
 // The answer of a prediction in one card: the life with its band, what ends it, validity.
 
 import { element, shape, terms } from "./dom.js";
-import { bandOf, bandOfError, count, cycles, deserved, fixed, sentence, significant, words } from "./format.js";
+import { isUs, lengthShown, lengthAlone, sized, toldWithKeys } from "./units.js";
+import { bandOf, bandOfError, count, cycles, deserved, sentence, words } from "./format.js";
 
 const CHECKS_SHOWN = 5;
 /** What the number is, by the reason of the end. */
@@ -67,9 +68,9 @@ function large(s) {
   if (s.life_cycles === null) return said("Life", "No growth", "ΔK of every tip is below the threshold: unlimited life.");
   const [band, run] = [quantilesOf(s), lifeShown(s)];
   if (s.fleet) return ofFleet(s, run);
-  const start = `from a crack of ${fixed(from, 2)} mm`;
+  const start = `from a crack of ${lengthShown(from, 2)}`;
   const end = TO_THE_END[s.stop_reason];
-  const title = BROKEN_OFF.includes(s.stop_reason) ? `Stopped early at ${fixed(to, 1)} mm` : end ? `Cycles ${start} ${end}` : `Life ${start}`;
+  const title = BROKEN_OFF.includes(s.stop_reason) ? `Stopped early at ${lengthShown(to, 1)}` : end ? `Cycles ${start} ${end}` : `Life ${start}`;
   return [element("h2", null, title), value(run, "cycles"),
     element("p", { class: "beside" }, bandWords(s)), band && bar(band, [0, 1.05 * band[2]]),
     element("p", { class: "quiet" }, errorWords(s) && `Numerical error: ${errorWords(s)}`)];
@@ -85,7 +86,7 @@ export function inspectionsOf({ fleet: { inspections: looks }, passes, life_cycl
   const p05 = looks.detectable_to_critical_cycles.p05;
   const every = looks.interval_cycles ?? (p05 === null ? null : p05 / looks.factor);
   return {
-    from: `${significant(looks.detectable_mm, 4)} mm`, rule: `5 % remaining life of the fleet / ${looks.factor}`,
+    from: sized(looks.detectable_mm, "mm", 4), rule: `5 % remaining life of the fleet / ${looks.factor}`,
     // Rounded down: an interval is a promise.
     interval: every === null ? looks.detectable_to_critical_cycles.words.p05 ?? "unknown" : `${cycles(Math.floor(every))} cycles${inPasses(every, passes, life)}`,
     left: quantileWords(looks.detectable_to_critical_cycles),
@@ -127,19 +128,31 @@ function why(s, more) {
   const tips = s.tips ?? [];
   // The length of all cracks together is none that anyone measures.
   const isEnd = s.critical && Math.abs(s.critical.crack_length_mm - s.crack_length_final_mm) < 1e-6;
-  const critical = s.critical && (lead === null || isEnd) && fixed(isEnd ? to : s.critical.crack_length_mm, 2);
+  const critical = s.critical && (lead === null || isEnd) && lengthShown(isEnd ? to : s.critical.crack_length_mm, 2);
   const facts = [
-    [tips.length > 1 && lead !== null ? `Crack of tip ${lead}` : "Crack length", `${fixed(from, 2)} to ${fixed(to, 2)} mm`],
-    critical && ["Critical", `${critical} mm: ${words(s.critical.criterion)}`],
+    [tips.length > 1 && lead !== null ? `Crack of tip ${lead}` : "Crack length", `${lengthAlone(from, 2)} to ${lengthShown(to, 2)}`],
+    critical && ["Critical", `${critical}: ${words(s.critical.criterion)}`],
     ...more,
   ].filter(Boolean);
   return [element("h2", null, s.life_cycles === null ? "Because" : "Ends by"),
-    element("p", { class: "why", "data-value": "stop" }, s.stop_meaning ?? words(s.stop_reason)), terms(facts, "result")];
+    element("p", { class: "why", "data-value": "stop" }, toldWithKeys(s.stop_meaning) ?? words(s.stop_reason)), terms(facts, "result")];
 }
 
-export const line = (check) => element("li", { "data-check": check.name, "data-verdict": check.verdict },
+/** Crack lengths that checks name rounded, mm. */
+const LENGTHS = {
+  small_scale_yielding: ({ plastic_zone: zone }) => zone?.too_large_to_mm ?? zone?.too_large_from_mm,
+  cross_check: ({ k_cross_check: compared }) => compared?.crack_length_mm,
+};
+
+/** Words of a check; in inches a length is rounded once, of the number that the result has. */
+function wordsOf({ name, words: said }, result) {
+  const length = isUs && LENGTHS[name]?.(result);
+  return toldWithKeys(length > 0 ? said.replace(/a = [\d.]+ mm/, `a = ${lengthShown(length, length < 10 ? 1 : 0)}`) : said);
+}
+
+export const line = (check, result = {}) => element("li", { "data-check": check.name, "data-verdict": check.verdict },
   mark(OF_VERDICT[check.verdict] ?? "note")[0],
-  element("span", null, mark(OF_VERDICT[check.verdict] ?? "note")[1], sentence(check.words), check.remedy && element("span", { class: "quiet" }, ` – ${check.remedy}`)));
+  element("span", null, mark(OF_VERDICT[check.verdict] ?? "note")[1], sentence(wordsOf(check, result)), check.remedy && element("span", { class: "quiet" }, ` – ${toldWithKeys(check.remedy)}`)));
 
 /** Growth at an end of the tested ΔK against the law, percent, beyond which a life is cautioned: as `lack_of_fit` of a result has it. */
 const MISFIT_CAUTION = 5;
@@ -153,13 +166,15 @@ export const misfitsOf = ({ misfit_at_ends: ends }) => [ends?.low, ends?.high].f
 /** Mark of a verdict. */
 export const kindOfVerdict = (kind) => ({ valid: "ok", not_valid: "bad" })[kind] ?? "note";
 
-function valid({ verdict, verdict_kind: validity, checks = [] }) {
+function valid(s) {
+  const { verdict, verdict_kind: validity, checks = [] } = s;
+  const own = (check) => line(check, s);
   if (!validity) return element("p", { class: "quiet" }, "Result of an earlier version.");
   const kind = kindOfVerdict(validity);
   const [shown, rest] = [checks.slice(0, CHECKS_SHOWN), checks.slice(CHECKS_SHOWN)];
   return [element("h2", null, "Validity"), element("p", { class: `verdict is-${kind}`, "data-value": "verdict" }, sentence(verdict)),
-    element("ul", { class: "checks" }, shown.map(line)),
-    rest.length > 0 && element("details", null, element("summary", null, `${count(rest.length, "more check")}`), element("ul", { class: "checks" }, rest.map(line)))];
+    element("ul", { class: "checks" }, shown.map(own)),
+    rest.length > 0 && element("details", null, element("summary", null, `${count(rest.length, "more check")}`), element("ul", { class: "checks" }, rest.map(own)))];
 }
 
 /** The card. `more`: further terms of the end. */

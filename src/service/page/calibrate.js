@@ -77,7 +77,7 @@ export function createCalibrateView(materials) {
     for (const [metric, value] of Object.entries(sizes)) {
       const field = specimen.field(metric);
       if (value === undefined || !field || field.touched) continue;
-      field.write(value);
+      field.propose(value);
       tellUntilEdited(field, from);
     }
     // Loads of the readings have their own.

@@ -111,7 +111,7 @@ function understood(lines, checks = []) {
   const pairs = (wanted) => Object.entries(lines).filter(([key]) => FIRST.includes(key) === wanted).map(([key, value]) => [sentence(words(key)), String(value)]);
   const [first, others] = [pairs(true), pairs(false)];
   return [terms(first.length > 0 ? first : others, "understood"),
-    checks.length > 0 && element("ul", { class: "checks" }, checks.filter((check) => check.verdict !== "passed").map(line)),
+    checks.length > 0 && element("ul", { class: "checks" }, checks.filter((check) => check.verdict !== "passed").map((check) => line(check))),
     first.length > 0 && others.length > 0 && element("details", { class: "quiet" }, element("summary", null, "All inputs"), terms(others, "understood-all"))];
 }
 

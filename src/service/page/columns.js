@@ -2,7 +2,8 @@
 // `measured.columns` in a calibration file.
 
 import { element, table, uniqueId } from "./dom.js";
-import { cycles, fixed, parseNumber } from "./format.js";
+import { cycles, parseNumber } from "./format.js";
+import { lengthShown } from "./units.js";
 
 const KEYS = [
   ["", "ignore"], ["cycles", "cycles"], ["length", "crack length"], ["specimen", "specimen"],
@@ -13,7 +14,7 @@ const KEYS = [
 function withTaken({ columns, taken }, cell, row, index) {
   const value = taken?.[row]?.[index];
   if (!Number.isFinite(value) || parseNumber(cell) === value) return cell;
-  return [cell, " ", element("span", { class: "quiet nowrap" }, columns.keys[index] === "length" ? `${fixed(value, 2)} mm` : cycles(Math.round(value)))];
+  return [cell, " ", element("span", { class: "quiet nowrap" }, columns.keys[index] === "length" ? lengthShown(value, 2) : cycles(Math.round(value)))];
 }
 
 /** `onChange` is called when another choice was made. Gives {names(), clear(), show(file)}. */

@@ -1,16 +1,19 @@
 // Further analyses of a prediction. A result never changes: each is a run of the same input with an option of its own.
 
 import { inPasses, inspectionsOf } from "./answer.js";
-import { button, element, section, show, terms } from "./dom.js";
+import { getText } from "./api.js";
+import { createChart } from "./chart.js";
+import { button, element, readCsv, section, show, terms } from "./dom.js";
 import { createForm, grid, numberIn } from "./form.js";
-import { bandOf, cycles, deserved, fixed, significant, whole } from "./format.js";
-import { filesOf, nameOf } from "./job.js";
+import { bandOf, cycles, deserved, significant, whole } from "./format.js";
+import { filesOf, nameOf, pathOf } from "./job.js";
 import { keyOf, loadKeys } from "./keys.js";
-import { problemBox } from "./notices.js";
+import { loadInto, problemBox } from "./notices.js";
 import { filePicture } from "./picture.js";
 import { startRun } from "./submit.js";
-import { inShown, unitShown } from "./units.js";
+import { inShown, isUs, lengthShown, sized, unitShown } from "./units.js";
 
+const STRENGTH = "residual_strength";
 const PICTURES = { "fleet.svg": "Fleet", "sensitivities.svg": "Sensitivity of the life", "residual_strength.svg": "Residual strength" };
 
 const hasFile = (job, file) => job.files.some(({ name }) => name === file);
@@ -32,18 +35,39 @@ function inspectionWords(found, { inspection: from, passes, life_cycles: life, f
   const band = from?.has_band && [from.remaining_cycles_p05, from.remaining_cycles_p50, from.remaining_cycles_p95];
   const rounded = band ? deserved(every, band, Math.floor) : cycles(Math.floor(every));
   const tip = (from?.tip ?? null) === null ? "" : ` (tip ${from.tip})`;
-  return `${found.rows.length}${from ? `, from ${fixed(from.crack_length_mm, 2)} mm${tip}` : ""}, every ${rounded} cycles${inPasses(every, passes, life)}`;
+  return `${found.rows.length}${from ? `, from ${lengthShown(from.crack_length_mm, 2)}${tip}` : ""}, every ${rounded} cycles${inPasses(every, passes, life)}`;
+}
+
+/** Residual strength over crack length as its table has it, in the units that are shown, with the largest load of the cycle. */
+function strengthChart(job, { case: input }, signal) {
+  const place = element("div");
+  loadInto(place, async () => {
+    const columns = readCsv(await getText(`${pathOf(job)}/files/${STRENGTH}.csv`, signal));
+    const [key, unit, name] = `${STRENGTH}_mpa` in columns ? ["mpa", "MPa", "gross stress"] : ["kn", "kN", "force"];
+    const { stress_ratio: ratio, ...load } = input?.loading ?? {};
+    const [most, range] = ["max", "range"].map((one) => load[`stress_${one}_${key}`] ?? load[`force_${one}_${key}`]);
+    const top = most ?? range / (1 - ratio);
+    const chart = createChart(place, {
+      name: "strength", label: "Residual strength against crack length",
+      x: { label: "Crack length a", unit: "mm" }, y: { label: `Residual strength (${name})`, unit, from: 0 },
+    });
+    signal.addEventListener("abort", () => chart.destroy());
+    const line = (id, title, column, tone) => column?.some(Number.isFinite) && { id, name: title, kind: "line", tone, dashed: tone > 0, x: columns.crack_length_mm, y: column };
+    chart.set([line("strength", "residual strength", columns[`${STRENGTH}_${key}`], 0), line("toughness", "fracture (K_c)", columns[`by_toughness_${key}`], 1),
+      line("net-section", "net-section yield", columns[`by_net_section_${key}`], 2), top > 0 && { id: "load", kind: "limit", name: "maximum load of the cycle", y: [top] }].filter(Boolean));
+  });
+  return place;
 }
 
 /** What further analyses found: their pictures and figures. */
 export const foundFurther = (job, { inspections: found, measured: own, ...result }, signal) => [
-  ...Object.entries(PICTURES).filter(([file]) => hasFile(job, file)).map(([file, title]) => card(file.replace(".svg", ""), title, filePicture(job, file, title, signal))),
+  ...Object.entries(PICTURES).filter(([file]) => hasFile(job, file)).map(([file, title]) => card(file.replace(".svg", ""), title, isUs && file === `${STRENGTH}.svg` ? strengthChart(job, result, signal) : filePicture(job, file, title, signal))),
   ...(found ? [card("detection", "Detection", terms([
     ["All inspections miss", `probability ${chance(result.fleet?.missed ?? found.missed)} (${result.fleet ? "mean of the fleet; " : ""}independence assumed)`],
-    ["POD", `a50 ${significant(found.a50_mm, 3)} mm, a90 ${significant(found.a90_mm, 3)} mm`],
+    ["POD", `a50 ${sized(found.a50_mm, "mm", 3)}, a90 ${sized(found.a90_mm, "mm", 3)}`],
     ["Inspections", inspectionWords(found, result)]], "detection"))] : []),
   ...(own ? [card("readings", "Remaining life by readings of this plate", terms([
-    [`From ${significant(own.crack_length_mm, 4)} mm at ${whole(own.cycles)} cycles`, leftWords(own)], ["Without readings", leftWords(own.of_lot)]], "readings"))] : []),
+    [`From ${sized(own.crack_length_mm, "mm", 4)} at ${whole(own.cycles)} cycles`, leftWords(own)], ["Without readings", leftWords(own.of_lot)]], "readings"))] : []),
 ];
 
 /** Options by which the inspections of a result were asked for. */

@@ -4,9 +4,9 @@ import { Problem, download, getBlob, getJson, patchJson, postJson, remove } from
 import { button, byId, element, show, terms } from "./dom.js";
 import { follow } from "./events.js";
 import { excerpt } from "./excerpt.js";
-import { bytes, count, cycles, duration, fixed, moment, percent, sentence } from "./format.js";
+import { bytes, count, cycles, duration, moment, percent, sentence } from "./format.js";
 import { problemBox } from "./notices.js";
-import { isUs } from "./units.js";
+import { isUs, lengthShown } from "./units.js";
 
 export const FINAL = ["succeeded", "failed", "cancelled"];
 
@@ -192,7 +192,7 @@ export function createJobHead(first, { actions = [] } = {}) {
       ["Progress", percent(p.share, 0)],
       // A fit makes several runs: the progress of one says nothing.
       prediction && ["Cycles", cycles(Math.round(p.cycles))],
-      prediction && ["Crack length", `${fixed(p.crack_length_mm, 2)} mm`],
+      prediction && ["Crack length", lengthShown(p.crack_length_mm, 2)],
       ["Elapsed", duration(p.elapsed_s)],
       // By the growth so far, without the bounds of the error and the files that follow it.
       ["Time left", p.share > 0.995 ? "finishing" : Number.isFinite(p.seconds_left) ? `about ${duration(p.seconds_left)}` : "not known yet"],

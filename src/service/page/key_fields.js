@@ -40,13 +40,15 @@ export function fieldOf(form, path, key, more) {
   const field = make(names, { label: key.label, unit: key.unit, hint: key.hint, signed: key.signed, optional: !key.needed, needed: key.needed, options: key.choices, ...more });
   const meaning = () => key.choices && tell(field, key.choices.find(({ value }) => value === field.input.value)?.meaning ?? key.hint);
   field.input.addEventListener("input", meaning);
-  const write = (value, table) => {
+  const write = (value, table, digits) => {
     if (field.pick) field.pick(value);
-    else fillIn(field, toShown(key, value, table));
+    else fillIn(field, toShown(key, value, table, digits));
     untell(field);
     meaning();
   };
-  return Object.assign(field, { key, write, read: () => (READ[key.shape] ?? text)(field), drop: () => form.drop([field]) });
+  // What is proposed is converted to a number that people write.
+  const propose = (value) => write(value, {}, 5);
+  return Object.assign(field, { key, write, propose, read: () => (READ[key.shape] ?? text)(field), drop: () => form.drop([field]) });
 }
 
 /** Fields of keys, by the metric names of these in `by`. */

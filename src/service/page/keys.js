@@ -64,11 +64,11 @@ function choicesIn({ enum: names, type, "x-meanings": meanings, "x-default": val
   return names && [none, ...names.map((name, index) => ({ value: name, title: sentence(words(name)), meaning: meanings[index] }))];
 }
 
-/** A metric value of the key in the units that are shown; C of a law by its exponent in `table`. */
-export function toShown({ factor, exponent, shape }, value, table = {}) {
+/** A metric value of the key in the units that are shown, with so many digits; C of a law by its exponent in `table`. */
+export function toShown({ factor, exponent, shape }, value, table = {}, digits = 9) {
   if (!isUs || (factor === 1 && !exponent)) return value;
   const size = exponent ? factor / KSI_SQRT_IN ** (table[exponent] ?? table.paris_m ?? 0) : factor;
-  const change = (number, by) => (Array.isArray(number) ? number.map((one) => change(one, by)) : typeof number === "number" ? Number((number / by).toPrecision(9)) : number);
+  const change = (number, by) => (Array.isArray(number) ? number.map((one) => change(one, by)) : typeof number === "number" ? Number((number / by).toPrecision(digits)) : number);
   // Rows of loads have a crack length first.
   return shape === "other" && Array.isArray(value) && Array.isArray(value[0]) ? value.map(([length, load]) => [change(length, INCH), change(load, size)]) : change(value, size);
 }

@@ -12,6 +12,7 @@ import { createFields } from "./key_fields.js";
 import { keysOf } from "./keys.js";
 import { createLeftOut } from "./left_out.js";
 import { problemBox } from "./notices.js";
+import { inShown, isUs, unitShown } from "./units.js";
 
 const LENGTHS = { mm: "millimeters", inch: "inches", m: "meters" };
 const CYCLES = { cycles: "single cycles", kilocycles: "thousands of cycles", megacycles: "millions of cycles" };
@@ -129,7 +130,7 @@ export function createMeasured(onChange) {
   function ranges(found) {
     const lengths = found.flatMap((curve) => curve.crack_length_mm);
     const last = Math.max(...found.map((curve) => curve.cycles.at(-1) ?? 0));
-    return `${plain(Math.min(...lengths))} to ${plain(Math.max(...lengths))} mm, up to ${cycles(last)} cycles`;
+    return `${[Math.min(...lengths), Math.max(...lengths)].map((length) => plain(inShown(length, "mm"), isUs ? 5 : 6)).join(" to ")} ${unitShown("mm")}, up to ${cycles(last)} cycles`;
   }
 
   /** Whether a problem is with what the columns are, which can be chosen here. */

@@ -4,6 +4,10 @@ import { getBlob } from "./api.js";
 import { button, byId, element } from "./dom.js";
 import { pathOf } from "./job.js";
 import { problemBox } from "./notices.js";
+import { isUs } from "./units.js";
+
+/** Words below a picture that the run has drawn, whose units stay as they are; empty where it has none, or these are shown. */
+export const unitsOf = async (blob) => (isUs && />[^<]*\b(mm|MPa|kN)\b/.test(await blob.text()) ? "Picture in metric units, as are the files of the run." : "");
 
 /** An image on paper with a button that shows it as large as the window allows. Gives {node, image}. */
 export function createPicture(alt) {
@@ -20,7 +24,10 @@ export function createPicture(alt) {
 /** A picture among the files of a run. */
 export function filePicture(job, file, alt, signal) {
   const { node, image } = createPicture(alt);
-  getBlob(`${pathOf(job)}/files/${encodeURIComponent(file)}`, signal).then((blob) => showBlob(image, blob))
+  getBlob(`${pathOf(job)}/files/${encodeURIComponent(file)}`, signal).then(async (blob) => {
+    await showBlob(image, blob);
+    node.append(element("p", { class: "hint" }, await unitsOf(blob)));
+  })
     .catch((error) => error.name === "AbortError" || node.after(problemBox(error)));
   return node;
 }

@@ -2,7 +2,8 @@
 // number of cycles. What is put over it has its places in mm.
 
 import { shape, show } from "./dom.js";
-import { inShown } from "./units.js";
+import { plain } from "./format.js";
+import { INCH, inShown, isUs } from "./units.js";
 
 const STOPS = 5;
 
@@ -13,10 +14,26 @@ function colorOf(share) {
   return `color-mix(in oklab, var(--n${first}) ${(100 * (1 - at + first)).toFixed(0)}%, var(--n${first + 1}))`;
 }
 
+/** The scale bar of a part, of 1, 2 or 5 times a power of ten of an inch; `scale` is in pixels to a mm, `width` in pixels. */
+function measureInInches(part, scale, width) {
+  const most = (0.25 * width) / scale / INCH;
+  const power = 10 ** Math.floor(Math.log10(most));
+  const length = [5, 2, 1].map((digit) => digit * power).find((one) => one <= most) ?? power;
+  for (const rule of part.querySelectorAll(".plate-rule")) {
+    const [line, name] = ["polyline", "text"].map((tag) => rule.querySelector(tag));
+    const [[x, top], [, y]] = line.getAttribute("points").split(" ").map((pair) => pair.split(",").map(Number));
+    const end = x + length * INCH * scale;
+    line.setAttribute("points", [[x, top], [x, y], [end, y], [end, top]].join(" "));
+    name.setAttribute("x", end + 6);
+    name.textContent = `${plain(length)} inch`;
+  }
+}
+
 /** A part of the drawing: {svg, over, to(cycles), toPixels([x, y]), toPlate([x, y])}; `over` is drawn above it. */
 function viewOf(part, name, sentence) {
   const [left, top, width, height] = part.dataset.box.split(" ").map(Number);
   const [scale, x0, y0] = part.dataset.mm.split(" ").map(Number);
+  if (isUs) measureInInches(part, scale, width);
   const over = shape("g");
   const svg = shape("svg", { class: "plate", role: "img", "aria-label": sentence, "data-plate": name, viewBox: part.dataset.box, width, height }, part, over);
   const steps = [...part.querySelectorAll("[data-cycles]")].map((node) => ({ node, cycles: Number(node.dataset.cycles), tip: node.parentNode.dataset.tip }));

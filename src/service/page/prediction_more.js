@@ -1,8 +1,9 @@
 // Further terms of a prediction: passes and retardation of a spectrum, breakthrough of a part-through crack.
 
 import { element, terms } from "./dom.js";
-import { cycles, deserved, fixed, percent, plain, sentence, significant, whole, words } from "./format.js";
+import { cycles, deserved, percent, plain, sentence, significant, whole, words } from "./format.js";
 import { createSpectrumPicture } from "./spectrum_picture.js";
+import { lengthAlone, lengthShown, sized } from "./units.js";
 
 /** Breakthrough, its rule, and the effect of the error of K on the life: terms of the answer card. */
 export function partThroughTerms({ part_through: found, life_cycles: life }) {
@@ -11,8 +12,8 @@ export function partThroughTerms({ part_through: found, life_cycles: life }) {
   const [shorter, longer] = [found.life_cycles_if_k_is_larger, found.life_cycles_if_k_is_smaller];
   const rounded = (value) => deserved(value, [shorter, life, longer ?? 2 * life]);
   return [
-    ["Depth a", `${fixed(found.crack_depth_initial_mm, 2)} to ${fixed(found.crack_depth_final_mm, 2)} mm`],
-    ["Breakthrough", through === null ? "not reached" : `after ${cycles(Math.round(through))} cycles (a/t = 1), c ${fixed(found.crack_length_at_break_through_mm, 2)} mm`],
+    ["Depth a", `${lengthAlone(found.crack_depth_initial_mm, 2)} to ${lengthShown(found.crack_depth_final_mm, 2)}`],
+    ["Breakthrough", through === null ? "not reached" : `after ${cycles(Math.round(through))} cycles (a/t = 1), c ${lengthShown(found.crack_length_at_break_through_mm, 2)}`],
     [`K ±${plain(found.k_error_percent)} %`, `life ${rounded(shorter)} to ${longer === null ? "unlimited" : rounded(longer)}`],
   ];
 }
@@ -22,7 +23,7 @@ const nameOf = ({ retardation }) => (retardation?.model && retardation.model !==
 /** The largest load of a spectrum with its unit. */
 function largestOf({ spectrum, case: input }) {
   const { spectrum_scale_mpa: stress, spectrum_scale_n: force } = input?.loading ?? {};
-  return stress === undefined ? `${significant(force * spectrum.largest)} N` : `${significant(stress * spectrum.largest)} MPa`;
+  return stress === undefined ? sized(force * spectrum.largest, "N", 4) : sized(stress * spectrum.largest, "MPa", 4);
 }
 
 /** Passes, the largest cycle and the model of retardation: terms of the answer card. */

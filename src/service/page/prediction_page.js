@@ -10,13 +10,13 @@ import { foundFurther, furtherCards } from "./further.js";
 import { count, cycles, deserved, duration, fixed, scientific, sentence, significant, whole, words } from "./format.js";
 import { createJobHead, describe, downloadList, failureOf, filesOf, inputText, isFinal, pathOf } from "./job.js";
 import { problemBox } from "./notices.js";
-import { createPicture, filePicture, showBlob } from "./picture.js";
+import { createPicture, filePicture, showBlob, unitsOf } from "./picture.js";
 import { createPlate } from "./plate.js";
 import { partThroughTerms, spectrumCard, spectrumTerms } from "./prediction_more.js";
 import { createRemaining, fleetInspection } from "./remaining.js";
 import { reportButton } from "./report.js";
 import { curveChoices } from "./resample.js";
-import { levelShown, unitShown } from "./units.js";
+import { inShown, lengthAlone, lengthShown, levelShown, unitShown } from "./units.js";
 
 const STEPS = 1000;
 const PLAY_MS = 5000;
@@ -95,7 +95,7 @@ export async function openPrediction(root, id, signal) {
       if (revision !== next) return; // a newer one is on its way
       fieldFigure.hidden = false;
       await showBlob(image, blob);
-      fieldNote.textContent = `At ${cycles(Math.round(moment))} cycles, crack length ${fixed(length, 2)} mm.`;
+      fieldNote.textContent = `At ${cycles(Math.round(moment))} cycles, crack length ${lengthShown(length, 2)}.`;
     } catch {
       // The next picture comes soon; the run itself is not touched by this.
     }
@@ -145,8 +145,9 @@ export async function openPrediction(root, id, signal) {
     fieldFigure.hidden = !picture;
     if (picture) {
       revision = Infinity;
-      await showBlob(image, await getBlob(pathTo(done, picture), signal));
-      fieldNote.textContent = FIELDS[picture];
+      const blob = await getBlob(pathTo(done, picture), signal);
+      await showBlob(image, blob);
+      fieldNote.textContent = [FIELDS[picture], await unitsOf(blob)].filter(Boolean).join(" ");
     }
     if (has(done, SECTION)) {
       factors.after(element("figure", { class: "card figure", "data-part": "section" }, element("div", { class: "chart-head" }, element("h2", null, "Section through the crack")),
@@ -229,10 +230,10 @@ const bandOf = ({ cycles_p05: low, cycles_p95: high }, lengths) => (low ? [{ id:
 function limitsOf(result) {
   const begins = result?.plastic_zone?.too_large_to_mm;
   const from = begins ?? result?.plastic_zone?.too_large_from_mm;
-  return from ? [{ id: "yielding", kind: "limit", name: `small-scale yielding ${begins ? "begins" : "ends"}, ${fixed(from, 1)} mm`, y: [from] }] : [];
+  return from ? [{ id: "yielding", kind: "limit", name: `small-scale yielding ${begins ? "begins" : "ends"}, ${lengthShown(from, 1)}`, y: [from] }] : [];
 }
 
-const endOf = (steps, lengths) => ({ id: "end", kind: "end", name: `${fixed(lengths.at(-1), 1)} mm`, x: [steps.at(-1)], y: [lengths.at(-1)] });
+const endOf = (steps, lengths) => ({ id: "end", kind: "end", name: lengthShown(lengths.at(-1), 1), x: [steps.at(-1)], y: [lengths.at(-1)] });
 
 function howComputed(job, r) {
   const law = r.law ?? {};
@@ -260,7 +261,7 @@ function createPlace({ columns, lengths, lead, result, chart, factorChart, plate
   const steps = columns.cycles;
   const life = steps.at(-1);
   const cell = (name, wide) => [name, element("dd"), wide];
-  const cells = { a: cell("Crack length"), k: cell(["K", element("sub", null, "I"), " at maximum load"]), kk: cell(["K", element("sub", null, "II")], true), left: cell(result.fleet ? "Remaining life, nominal inputs" : "Remaining life"), band: cell("Scatter band (90 %)", true) };
+  const cells = { a: cell("Crack length"), k: cell(["K", element("sub", null, "I"), " at maximum load"]), kk: cell(["K", element("sub", null, "II")], true), left: cell(result.fleet ? "Remaining, nominal" : "Remaining life"), band: cell("Scatter band (90 %)", true) };
   const told = element("b");
   const share = element("span");
   const slider = element("input", { type: "range", id: "place", min: "0", max: String(STEPS), value: "0" });
@@ -284,13 +285,14 @@ function createPlace({ columns, lengths, lead, result, chart, factorChart, plate
     const unit = (text, of) => [text, " ", element("small", null, of)];
     told.textContent = cycles(Math.round(here));
     share.textContent = `${Math.round((100 * here) / life)} % of life`;
-    show(cells.a[1], unit(fixed(a, 2), "mm"));
-    show(cells.k[1], Number.isFinite(k) ? unit(fixed(k, 1), "MPa√m") : "not read");
-    show(cells.kk[1], Number.isFinite(kk) ? unit(fixed(kk, 1), "MPa√m") : "not read");
+    const factor = (value) => (Number.isFinite(value) ? unit(fixed(inShown(value, "MPa√m"), 1), unitShown("MPa√m")) : "not read");
+    show(cells.a[1], unit(lengthAlone(a, 2), unitShown("mm")));
+    show(cells.k[1], factor(k));
+    show(cells.kk[1], factor(kk));
     const quantiles = band && ["05", "50", "95"].map((name) => value(columns[`remaining_cycles_p${name}`], here));
     show(cells.left[1], unit(quantiles?.[1] > 0 ? deserved(quantiles[1], quantiles) : byError(life - here, result), "cycles"));
     show(cells.band[1], quantiles?.[1] > 0 ? `${deserved(quantiles[0], quantiles)} to ${deserved(quantiles[2], quantiles)}` : "no band");
-    slider.setAttribute("aria-valuetext", `${cycles(Math.round(here))} cycles, crack length ${fixed(a, 2)} mm`);
+    slider.setAttribute("aria-valuetext", `${cycles(Math.round(here))} cycles, crack length ${lengthShown(a, 2)}`);
     if (document.activeElement !== slider || !isOwn) slider.value = String(Math.round((STEPS * here) / life));
     if (isOwn) listener(a);
   }

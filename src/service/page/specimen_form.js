@@ -179,7 +179,7 @@ export function createLoading(form, { sides, plate, spectrum } = {}) {
       if (metric && !magnitude?.touched && !quantity.touched && magnitudes.some((key) => key.metric === metric)) {
         quantity.input.value = metric;
         draw();
-        magnitude.write(value);
+        magnitude.propose(value);
         if (from) tellUntilEdited(magnitude, from);
       }
       if (given === undefined || ratio.touched) return;

@@ -1,6 +1,8 @@
 // Units that the page shows: everything comes in mm, MPa and MPa√m; a switch, kept by the browser, has every figure shown in inch, ksi and ksi√in.
 // Words change where they enter the document, charts along their axes; fields have the keys of the shown units.
 
+import { fixed, significant } from "./format.js";
+
 export const INCH = 25.4; // mm
 const KSI = 4.4482216152605e3 / INCH ** 2; // MPa
 export const KSI_SQRT_IN = KSI * Math.sqrt(INCH / 1e3); // MPa√m
@@ -76,6 +78,20 @@ export const unitShown = (unit) => (isUs && UNITS[unit]?.[0]) || unit;
 
 /** A number that is written apart from its unit. */
 export const inShown = (value, unit) => value / ((isUs && UNITS[unit]?.[1]) || 1);
+
+/** A length, mm, with its unit: `decimals` of a millimetre, two more of an inch. What is rounded is the number that is shown. */
+export const lengthShown = (mm, decimals) => `${lengthAlone(mm, decimals)} ${unitShown("mm")}`;
+export const lengthAlone = (mm, decimals) => fixed(inShown(mm, "mm"), decimals + (isUs ? 2 : 0));
+
+/** A metric value with its unit and so many significant digits of the number that is shown. */
+export const sized = (value, unit, digits) => `${significant(inShown(value, unit), digits)} ${unitShown(unit)}`;
+
+/** Ends of keys, metric and in US units, longer ones first. */
+const KEYS = { mpa_sqrt_m: "ksi_sqrt_in", mm_per_cycle: "in_per_cycle", mm: "in", mpa: "ksi", gpa: "msi", kn: "kip" };
+const KEY = new RegExp(`(?<![\\w/\\\\-])([a-z][\\w.[\\]]*_)(${Object.keys(KEYS).join("|")})(?![\\w.]*\\w| *=)`, "g");
+
+/** Words with keys as the forms have them: stop.crack_length_mm is stop.crack_length_in. */
+export const toldWithKeys = (text) => (isUs && text ? told(text).replace(KEY, (_, stem, unit) => stem + KEYS[unit]) : text);
 
 /** C of C ΔK^m, mm/cycle at 1 MPa√m, in the units that are shown. */
 export const levelShown = (c, m) => (isUs ? (c * KSI_SQRT_IN ** m) / INCH : c);
