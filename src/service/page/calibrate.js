@@ -104,8 +104,8 @@ export function createCalibrateView(materials) {
 
   const measured = createMeasured(() => {
     const range = measured.window();
-    if (range && !from.touched) from.write(range[0]);
-    if (range && !to.touched) to.write(range[1]);
+    if (range && !from.touched) from.propose(range[0], -1);
+    if (range && !to.touched) to.propose(range[1], 1);
     if (range) proposeLength();
     const names = measured.names();
     loading.propose(measured.loading(), `read from ${names.length > 1 ? `${names.length} files` : names[0]}`);

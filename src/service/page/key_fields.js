@@ -5,6 +5,8 @@ import { compact, fillIn, grid, group, need, numberIn, numbersIn, tell, untell }
 import { hasOnly, toShown } from "./keys.js";
 
 const text = ({ input }) => input.value.trim() || undefined;
+/** Significant digits of a proposed value that is converted. */
+const DIGITS = 5;
 /** How a value is read, by the shape of its key. */
 const READ = {
   number: numberIn, whole: numberIn, numbers: numbersIn, file: (field) => field.given?.name,
@@ -46,8 +48,13 @@ export function fieldOf(form, path, key, more) {
     untell(field);
     meaning();
   };
-  // What is proposed is converted to a number that people write.
-  const propose = (value) => write(value, {}, 5);
+  // What is proposed is converted to a number that people write: not above the value with `away` −1, not below it with 1.
+  const propose = (value, away = 0) => {
+    write(value, {}, DIGITS);
+    const shown = numberIn(field);
+    if ((shown * key.factor - value) * away >= 0) return;
+    fillIn(field, Number((shown + away * 10 ** (Math.floor(Math.log10(Math.abs(shown))) + 1 - DIGITS)).toPrecision(DIGITS)));
+  };
   return Object.assign(field, { key, write, propose, read: () => (READ[key.shape] ?? text)(field), drop: () => form.drop([field]) });
 }
 

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use serde_json::{Value, json};
 use tempfile::tempdir;
 
 use super::{SLOW, of};
@@ -63,7 +64,7 @@ impl Walk {
     pub fn look(&self, name: &str) {
         fs::write(self.pictures.join(format!("{name}.png")), self.browser.picture()).unwrap();
         let flaws = self.browser.run(FLAWS);
-        assert_eq!(flaws, serde_json::json!([]), "{name}");
+        assert_eq!(flaws, json!([]), "{name}");
         // What a browser says of every answer that is an error is meant where input is wrong on purpose.
         let complaints: Vec<String> =
             self.browser.complaints().into_iter().filter(|line| !line.contains("status of 4")).collect();
@@ -130,7 +131,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
     // What a laboratory notes above its table: a material that the library has not leaves none, loads of the readings have their own R.
     for (noted, material, said) in [
         ("Material,Inconel 718", "", "Material in the file: Inconel 718; choose one"),
-        ("Werkstoff: EN AW-2024 T3\nRissebene: T-L", "al2024-t3-clad-tl", "read from noted"),
+        ("Werkstoff: EN AW-2024 T3\nRissebene: T-L", "al2024-t3-clad-tl", "read from noted_17.csv"),
         ("Material: AA 7075-T651\nOrientation: T-L", "al7075-t651-sheet-lt", "no record of orientation T-L"),
     ] {
         let name = format!("noted_{}.csv", material.len());
@@ -175,6 +176,8 @@ fn the_page_leads_from_readings_to_remaining_life() {
     walk.look("04_fit");
     let summary = service.get(&format!("/v1/calibrations/{fit}")).json()["summary"].clone();
     let exponent = format!("{:.4}", summary["paris_m"].as_f64().unwrap());
+    // A misfit is judged as a life with the law judges it.
+    let marks = page.run("return [...document.querySelectorAll('[data-mark]')].map((one) => one.dataset.mark)");
     assert!(page.text("[data-table=constants]").contains(&exponent), "{exponent} in {}", page.text("[data-table=constants]"));
 
     // Renamed where it stands.
@@ -229,6 +232,10 @@ fn the_page_leads_from_readings_to_remaining_life() {
         None => format!("{:.0}", summary["life_cycles"].as_f64().unwrap()),
     };
     assert!(digits(&page.text("[data-value=life_cycles]")).starts_with(&expected), "{expected}");
+    let fit_check = summary["checks"].as_array().unwrap().iter().find(|check| check["name"] == "lack_of_fit").unwrap();
+    let is_passed = fit_check["verdict"] == "passed";
+    assert_eq!(is_passed, marks.as_array().unwrap().iter().all(|mark| mark == "ok"), "{fit_check} {marks}");
+    assert!(marks.as_array().is_some_and(|marks| !marks.is_empty()));
     assert_eq!(done["calibration"], fit.as_str());
     walk.look("07_predicted");
 
@@ -302,6 +309,8 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.see("#job[data-job-state=succeeded]");
     page.open(&format!("{}/#/runs", service.url));
     page.see("tr[data-job][data-job-state=succeeded]");
+    page.see(&format!("tr[data-job='{fit}'] .mark.is-{}", if is_passed { "ok" } else { "note" }));
+    assert_says(&page.text(&format!("tr[data-job='{first}'] th")), &["Plate, ", "al2024-t3: E ", "R = "]);
     walk.look("08_runs");
     // Put away, one is found again only by asking.
     page.click(&format!("tr[data-job='{fit}'] [data-action=more]"));
@@ -327,6 +336,8 @@ fn the_page_leads_from_readings_to_remaining_life() {
     walk.start("#sweep-start");
     page.see("#job[data-job-state=succeeded]");
     page.see("[data-value=life_cycles]");
+
+    one_figure_has_one_rounding(&walk, &service);
 
     // Stopped where it is, a run keeps its curve.
     let running = service.submit("predictions", &of("stopped", &SLOW.replace("spacing_mm = 0.8", "spacing_mm = 0.5")));
@@ -363,6 +374,60 @@ fn the_page_leads_from_readings_to_remaining_life() {
         std::thread::sleep(Duration::from_millis(400));
         walk.look(name);
     }
+}
+
+/// What a fleet, a run without a stated error, an inspection and the view in inches show is said once.
+fn one_figure_has_one_rounding(walk: &Walk, service: &Server) {
+    let page = &walk.browser;
+    let run = |case: &str, options: Value| {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/cases");
+        let input = fs::read_to_string(folder.join(format!("{case}.toml"))).unwrap();
+        let job = service.submit("predictions", &json!({ "name": case, "input": input, "options": options }));
+        let summary = service.succeeded(&job)["summary"].clone();
+        page.open(&format!("{}{}", service.url, job.replace("/v1/", "/#/")));
+        page.see("[data-part=remaining]");
+        page.until("!document.querySelector('[data-part=remaining] dl:empty')");
+        summary
+    };
+    let shown = |selector: &str| page.text(selector).replace('\u{202f}', "");
+
+    // The interval of a fleet is that of its plates alone.
+    let fleet = run("fleet_of_panels", json!({ "inspect_from_mm": 12, "pod": "12,20" }));
+    let every = format!("{:.0} cycles", fleet["fleet"]["inspections"]["interval_cycles"].as_f64().unwrap().floor());
+    for card in ["[data-part=result]", "[data-part=remaining]", "[data-part=detection]"] {
+        assert_says(&shown(card), &[&every]);
+    }
+    assert_eq!(page.count("#today-length"), 0);
+    let of_one = format!("{:.0}", fleet["inspection"]["inspection_interval_cycles"].as_f64().unwrap().floor());
+    assert!(!shown("main").contains(&of_one), "{of_one}");
+
+    // Cycles have the digits of their error; an inspection starts where it was asked for.
+    let beside = run("crack_beside_hole", json!({ "inspect_from_mm": 15, "pod": "12,20", "residual_strength": true }));
+    let digits = |key: &str, of: &Value| format!("{:.0}", (of[key].as_f64().unwrap() / 100.0).round() * 100.0);
+    let (life, left) = (digits("life_cycles", &beside), digits("remaining_cycles", &beside["inspection"]));
+    page.see("[data-value=remaining_cycles]");
+    assert_eq!(shown("[data-value=remaining_cycles]"), format!("{left} cycles"));
+    assert_says(&shown("[data-terms=remaining]"), &[format!("of {life} cycles")]);
+    assert_says(&shown("[data-part=result]"), &[format!("{life} cycles")]);
+    assert_eq!(page.run("return document.querySelector('#today-length').value"), "15.00");
+    assert_says(&shown("[data-terms=detection]"), &["from 15.00 mm", ", every "]);
+
+    // In inches a length is rounded once, keys have their names there, bars are round.
+    page.run("localStorage.setItem('perilife.units', 'us'); location.reload()");
+    page.until("document.readyState === 'complete'");
+    page.see("[data-chart=life] .end-mark");
+    page.see("[data-chart=strength] path[data-series=strength]");
+    let inches = |mm: &Value, decimals: usize| format!("{:.decimals$} inch", mm.as_f64().unwrap() / 25.4);
+    let end = &beside["crack_length_final_mm"];
+    assert_says(&shown("[data-part=result]"), &[inches(end, 4), "stop.crack_length_in".to_owned()]);
+    assert_says(&shown("[data-chart=life]"), &[inches(end, 3)]);
+    let start = page.run("return document.querySelector('#today-length').value");
+    assert_eq!(start, "0.5906");
+    let bars = page.run("return [...document.querySelectorAll('.plate-rule text')].map((one) => one.textContent)");
+    assert!(bars.as_array().unwrap().iter().all(|bar| matches!(bar.as_str(), Some("0.5 inch" | "0.2 inch"))), "{bars}");
+    walk.look("17_inches");
+    page.run("localStorage.setItem('perilife.units', 'si'); location.reload()");
+    page.until("document.readyState === 'complete'");
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn columns_that_nobody_knows_are_chosen_on_the_page() {
     let (dir, service) = Server::alone(&["--jobs", "1"]);
     page.look(1280, 900, "light");
     page.open(&format!("{}/#/measure", service.url));
-    page.see("#measured-input, #example");
+    page.see("#test-fields fieldset");
     let file = dir.path().join("unknown.csv");
     fs::write(&file, UNKNOWN).unwrap();
     page.fill("#measured-input", file.to_str().unwrap());
