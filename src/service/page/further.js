@@ -28,13 +28,13 @@ function leftWords({ remaining_cycles_p05: low, remaining_cycles_p50: middle, re
 const chance = (value) => (value < 1e-3 ? "< 0.001" : significant(value, 2));
 
 /** When the crack is looked for: as the interval of the inspection, rounded down. */
-function inspectionWords(found, { inspection: from, passes, life_cycles: life, fleet }) {
+function inspectionWords(found, { inspection: from, passes, life_cycles: life, fleet, tips = [] }) {
   const looks = fleet?.inspections;
   if (looks) return `first after ${cycles(Math.round(looks.first_inspection_cycles))} cycles, then every ${inspectionsOf({ fleet, passes, life_cycles: life }).interval}`;
   const every = found.interval_cycles;
   const band = from?.has_band && [from.remaining_cycles_p05, from.remaining_cycles_p50, from.remaining_cycles_p95];
   const rounded = band ? deserved(every, band, Math.floor) : cycles(Math.floor(every));
-  const tip = (from?.tip ?? null) === null ? "" : ` (tip ${from.tip})`;
+  const tip = tips.length > 1 && (from?.tip ?? null) !== null ? ` (tip ${from.tip})` : "";
   return `${found.rows.length}${from ? `, from ${lengthShown(from.crack_length_mm, 2)}${tip}` : ""}, every ${rounded} cycles${inPasses(every, passes, life)}`;
 }
 

@@ -176,6 +176,14 @@ fn the_page_leads_from_readings_to_remaining_life() {
     walk.look("04_fit");
     let summary = service.get(&format!("/v1/calibrations/{fit}")).json()["summary"].clone();
     let exponent = format!("{:.4}", summary["paris_m"].as_f64().unwrap());
+    // Ticks are those of the picture of the run.
+    let ticks = page.run(
+        "return [...document.querySelectorAll('[data-chart=rates] svg text')].map((one) => one.textContent).filter((text) => /^[\\d.]+$/.test(text))",
+    );
+    let svg = String::from_utf8(service.file(&format!("/v1/calibrations/{fit}"), "da_dn.svg")).unwrap();
+    let texts = svg.split("</text>").filter_map(|part| part.rsplit('>').next());
+    let drawn: Vec<&str> = texts.filter(|text| text.parse::<f64>().is_ok()).collect();
+    assert!(drawn.len() > 3 && ticks == json!(drawn), "{ticks} {drawn:?}");
     // A misfit is judged as a life with the law judges it.
     let marks = page.run("return [...document.querySelectorAll('[data-mark]')].map((one) => one.dataset.mark)");
     assert!(page.text("[data-table=constants]").contains(&exponent), "{exponent} in {}", page.text("[data-table=constants]"));
