@@ -116,7 +116,7 @@ function bandWords(s) {
 /** Estimated numerical error of life and path. */
 export function errorWords(s) {
   if (typeof s.error_estimate_percent === "number") {
-    const path = s.path_error_estimate_mm > 0 ? `, ≤ ${s.path_error_estimate_mm} mm in the path` : "";
+    const path = s.path_error_estimate_mm > 0 ? `, ≤ ${isUs ? sized(s.path_error_estimate_mm, "mm", 2) : `${s.path_error_estimate_mm} mm`} in the path` : "";
     return `≤ ${s.error_estimate_percent} % of life${path} (estimate)`;
   }
   return s.no_error_estimate && `not stated: ${s.no_error_estimate}`;

@@ -12,7 +12,7 @@ import { lawSections } from "./law_page.js";
 import { loadInto } from "./notices.js";
 import { filePicture } from "./picture.js";
 import { reportButton } from "./report.js";
-import { inShown, levelShown, unitShown } from "./units.js";
+import { inShown, levelShown, sized, spanned, unitShown } from "./units.js";
 
 const STRESS_INTENSITY = "MPa√m";
 const SPECIMENS_APART = 6;
@@ -170,8 +170,8 @@ function drawRates(place, rates, s) {
 function lawCard(s) {
   const remarks = misfit(s.misfit_at_ends);
   return element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
-    element("div", null, element("h2", null, `Growth rate at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 4)} ${STRESS_INTENSITY} (best-determined point)`),
-      element("p", { class: "life" }, scientific(s.rate_at_pivot_mm_per_cycle, 3), " ", element("small", null, "mm/cycle")),
+    element("div", null, element("h2", null, `Growth rate at ΔK ${sized(s.pivot_delta_k_mpa_sqrt_m, STRESS_INTENSITY, 4)} (best-determined point)`),
+      element("p", { class: "life" }, scientific(inShown(s.rate_at_pivot_mm_per_cycle, "mm/cycle"), 3), " ", element("small", null, unitShown("mm/cycle"))),
       element("p", { class: "beside" }, element("strong", null, `± ${percent(s.rate_at_pivot_relative_error, 1)}`), " (one standard error)"),
       element("p", { class: "quiet" }, `C = ${scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 3)}; always quote C with m.`)),
     element("div", null, element("h2", null, "Exponent m"), element("p", { class: "life" }, withError(s.paris_m, s.paris_m_error)),
@@ -181,7 +181,7 @@ function lawCard(s) {
         ["Life", `measured ${cycles(s.life_measured)}, fitted ${cycles(Math.round(s.life_fitted))} cycles (${deviation(s.life_fitted / s.life_measured - 1)})`],
         ["Fit error", `${percent(s.rms_life_error, 2)} rms of life`]].filter(Boolean), "exponent")),
     element("div", null, element("h2", null, "Validity"),
-      element("p", { class: "verdict" }, `For ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 4)} to ${significant(s.delta_k_max_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`),
+      element("p", { class: "verdict" }, `For ΔK ${spanned(s.delta_k_min_mpa_sqrt_m, s.delta_k_max_mpa_sqrt_m, STRESS_INTENSITY, 4)}`),
       element("ul", { class: "checks" }, remarks.map(([name, text, kind]) => element("li", { "data-mark": kind }, mark(kind)[0], element("span", null, mark(kind)[1], element("b", null, `${name}: `), text))))));
 }
 
@@ -190,7 +190,7 @@ function constants(s) {
   const isFitted = (s.p_source ?? "fitted") === "fitted";
   const error = (value) => (isFitted && Number.isFinite(value) ? `± ${significant(value, 2)}` : words(isFitted ? "" : s.p_source));
   const name = (text, unit) => [text, element("span", { class: "row-unit" }, unit)];
-  const atPivot = `mm/cycle, at ΔK = ${significant(s.pivot_delta_k_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`;
+  const atPivot = `${unitShown("mm/cycle")}, at ΔK = ${sized(s.pivot_delta_k_mpa_sqrt_m, STRESS_INTENSITY, 4)}`;
   const rows = [
     [name("Rate at reference ΔK", atPivot), scientific(inShown(s.rate_at_pivot_mm_per_cycle, "mm/cycle"), 4), `± ${percent(s.rate_at_pivot_relative_error, 2)}`],
     [name("Paris exponent m", "da/dN = C ΔKᵐ"), fixed(s.paris_m, 4), error(s.paris_m_error)],
@@ -206,7 +206,7 @@ function constants(s) {
     element("p", { class: "hint" },
       "C and m are correlated: compare and quote the rate at the reference ΔK (best-determined point) together with m."),
     terms([
-      ["Range of ΔK", `${significant(s.delta_k_min_mpa_sqrt_m, 4)} to ${significant(s.delta_k_max_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`],
+      ["Range of ΔK", spanned(s.delta_k_min_mpa_sqrt_m, s.delta_k_max_mpa_sqrt_m, STRESS_INTENSITY, 4)],
       ["Life measured", `${cycles(s.life_measured)} cycles`],
       ["Life fitted", `${cycles(Math.round(s.life_fitted))} cycles (${deviation(s.life_fitted / s.life_measured - 1)})`],
       ["rms life error", `${percent(s.rms_life_error, 2)} over all readings`],
@@ -220,7 +220,7 @@ function misfit({ low = null, high = null } = {}) {
   const end = (name, at) => {
     const share = at.rate_over_law_percent / 100;
     const [faster, longer] = share < 0 ? ["slower", "short"] : ["faster", "long"];
-    const range = `ΔK ${significant(at.delta_k_from_mpa_sqrt_m, 4)} to ${significant(at.delta_k_to_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`;
+    const range = `ΔK ${spanned(at.delta_k_from_mpa_sqrt_m, at.delta_k_to_mpa_sqrt_m, STRESS_INTENSITY, 4)}`;
     const size = percent(Math.abs(share), 1);
     return [name, `measured growth ${size} ${faster} than the law at ${range}; life there ${size} too ${longer} (${longer === "short" ? "conservative" : "non-conservative"})`, kindOfMisfit(at.rate_over_law_percent)];
   };

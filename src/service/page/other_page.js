@@ -6,6 +6,7 @@ import { element, section, show, showPage, table, terms } from "./dom.js";
 import { count, cycles, significant, words } from "./format.js";
 import { createJobHead, downloadList, inputText, showAtEnd } from "./job.js";
 import { filePicture } from "./picture.js";
+import { inShown, sized, unitShown } from "./units.js";
 
 const PICTURES_MAX = 12;
 
@@ -35,21 +36,21 @@ function factorsOf({ tips = [] }) {
   if (known.length === 0) return null;
   const [first] = known.filter((row) => row.method === known[0].method).sort((one, other) => other.k_i_mpa_sqrt_m - one.k_i_mpa_sqrt_m);
   const others = known.filter((row) => row.number === first.number && row !== first);
-  const figure = (value) => (typeof value === "number" ? significant(value, 4) : "–");
+  const figure = (value, unit) => (typeof value === "number" ? significant(inShown(value, unit), 4) : "–");
   const apart = others.map((row) => Math.abs(row.k_i_mpa_sqrt_m / first.k_i_mpa_sqrt_m - 1));
   const handbook = first.tip.handbook_k_i_mpa_sqrt_m;
-  const column = (title, unit) => ({ title, unit, numeric: true });
+  const column = (title, unit) => ({ title, unit: unitShown(unit), numeric: true });
   return [
     element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
       element("div", null, element("h2", null, `K of tip ${first.number} at maximum load, by ${words(first.method)}`),
-        element("p", { class: "life", "data-value": "k_i" }, figure(first.k_i_mpa_sqrt_m), " ", element("small", null, "MPa√m"))),
+        element("p", { class: "life", "data-value": "k_i" }, figure(first.k_i_mpa_sqrt_m, "MPa√m"), " ", element("small", null, unitShown("MPa√m")))),
       element("div", null, element("h2", null, "Other values"), terms([
-        ["K II", `${figure(first.k_ii_mpa_sqrt_m)} MPa√m`], ["T-stress", `${figure(first.t_stress_mpa)} MPa`],
-        ["Handbook", typeof handbook === "number" ? `${figure(handbook)} MPa√m` : "no formula for this plate"]], "factors")),
+        ["K II", `${figure(first.k_ii_mpa_sqrt_m, "MPa√m")} ${unitShown("MPa√m")}`], ["T-stress", `${figure(first.t_stress_mpa, "MPa")} ${unitShown("MPa")}`],
+        ["Handbook", typeof handbook === "number" ? sized(handbook, "MPa√m", 4) : "no formula for this plate"]], "factors")),
       element("div", null, element("h2", null, "Validity"), element("p", { class: `verdict ${apart.length > 0 && Math.max(...apart) < 0.01 ? "is-ok" : "is-note"}` },
         apart.length > 0 ? `Methods agree within ${significant(100 * Math.max(...apart), 2)} %` : "One method alone"))),
     table("Stress intensity factors at maximum load", [{ title: "Tip" }, { title: "Method" }, column("K I", "MPa√m"), column("K II", "MPa√m"), column("T", "MPa"), { title: "Remark" }],
-      rows.map((row) => [String(row.number), words(row.method), figure(row.k_i_mpa_sqrt_m), figure(row.k_ii_mpa_sqrt_m), figure(row.t_stress_mpa), row.note ?? ""]), { name: "factors" }),
+      rows.map((row) => [String(row.number), words(row.method), figure(row.k_i_mpa_sqrt_m, "MPa√m"), figure(row.k_ii_mpa_sqrt_m, "MPa√m"), figure(row.t_stress_mpa, "MPa"), row.note ?? ""]), { name: "factors" }),
   ];
 }
 

@@ -4,7 +4,7 @@ import { getJson } from "./api.js";
 import { button, byId, element, show } from "./dom.js";
 import { createEditor } from "./editor.js";
 import { compact, createForm, grid, group, need } from "./form.js";
-import { percent, plain, scientific, sentence, significant, words } from "./format.js";
+import { percent, plain, sentence, significant, words } from "./format.js";
 import { filesOf, jobToStartFrom } from "./job.js";
 import { createFields } from "./key_fields.js";
 import { choicesOf, hasOnly, keyOf, keysOf, known, toShown } from "./keys.js";
@@ -14,7 +14,7 @@ import { createLoading, createMaterial, createSpecimen, isThrough } from "./spec
 import { createSides } from "./sides_form.js";
 import { createSpectrum } from "./spectrum_form.js";
 import { startRun } from "./submit.js";
-import { inShown, kept, unitShown } from "./units.js";
+import { inShown, kept, rateShown, sized, spanned, unitShown } from "./units.js";
 
 /** The plate of the button Example. */
 const EXAMPLE = {
@@ -94,10 +94,10 @@ export function createPredictView(materials) {
   }
 
   function describe({ id, summary: s }) {
-    const rate = `${scientific(s.rate_at_pivot_mm_per_cycle)} mm/cycle ± ${percent(s.rate_at_pivot_relative_error)}`;
-    const range = `${significant(s.delta_k_min_mpa_sqrt_m, 4)} to ${significant(s.delta_k_max_mpa_sqrt_m, 4)} MPa√m`;
+    const rate = `${rateShown(s.rate_at_pivot_mm_per_cycle, 4)} ± ${percent(s.rate_at_pivot_relative_error)}`;
+    const range = spanned(s.delta_k_min_mpa_sqrt_m, s.delta_k_max_mpa_sqrt_m, "MPa√m", 4);
     return element("p", { class: "quiet" },
-      `${rate} at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m)} MPa√m, m ${significant(s.paris_m)} ± ${significant(s.paris_m_error, 2)}; `,
+      `${rate} at ΔK ${sized(s.pivot_delta_k_mpa_sqrt_m, "MPa√m", 4)}, m ${significant(s.paris_m)} ± ${significant(s.paris_m_error, 2)}; `,
       `tested ΔK range ${range}. `,
       element("a", { href: `#/calibrations/${encodeURIComponent(id)}` }, "Open the calibration"));
   }

@@ -16,7 +16,7 @@ import { partThroughTerms, spectrumCard, spectrumTerms } from "./prediction_more
 import { createRemaining, fleetInspection } from "./remaining.js";
 import { reportButton } from "./report.js";
 import { curveChoices } from "./resample.js";
-import { inShown, lengthAlone, lengthShown, levelShown, unitShown } from "./units.js";
+import { inShown, lengthAlone, lengthShown, levelShown, rateShown, sized, spanned, unitShown } from "./units.js";
 
 const STEPS = 1000;
 const PLAY_MS = 5000;
@@ -237,10 +237,10 @@ const endOf = (steps, lengths) => ({ id: "end", kind: "end", name: lengthShown(l
 
 function howComputed(job, r) {
   const law = r.law ?? {};
-  const rate = law.rate_at_pivot_mm_per_cycle && `da/dN ${scientific(law.rate_at_pivot_mm_per_cycle, 3)} mm/cycle at ΔK ${significant(law.pivot_delta_k_mpa_sqrt_m, 4)} MPa√m`;
+  const rate = law.rate_at_pivot_mm_per_cycle && `da/dN ${rateShown(law.rate_at_pivot_mm_per_cycle, 3)} at ΔK ${sized(law.pivot_delta_k_mpa_sqrt_m, "MPa√m", 4)}`;
   const given = !rate && law.paris_c_mm_per_cycle && `da/dN = ${scientific(levelShown(law.paris_c_mm_per_cycle, law.paris_m), 4)} ΔK^m ${unitShown("mm/cycle")} (ΔK in ${unitShown("MPa√m")})`;
   const paris = law.paris_m && `m ${significant(law.paris_m, 4)}${law.paris_m_error ? ` ± ${significant(law.paris_m_error, 2)}` : ""}`;
-  const range = law.delta_k_min_mpa_sqrt_m && `ΔK ${significant(law.delta_k_min_mpa_sqrt_m, 4)} to ${significant(law.delta_k_max_mpa_sqrt_m, 4)} MPa√m`;
+  const range = law.delta_k_min_mpa_sqrt_m && `ΔK ${spanned(law.delta_k_min_mpa_sqrt_m, law.delta_k_max_mpa_sqrt_m, "MPa√m", 4)}`;
   const isNodes = r.model?.method === "element_free_galerkin";
   const model = r.points > 0 ? `${count(r.points, isNodes ? "node" : "point")}, ${count(r.solves, "solution")}, ${duration(r.wall_s)}` : `hand calculation, ${duration(r.wall_s)}`;
   return element("section", { class: "card", "aria-labelledby": "computed-title" }, element("h2", { id: "computed-title" }, "Method"),

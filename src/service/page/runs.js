@@ -3,9 +3,10 @@
 import { fleetOf, kindOfMisfit, kindOfVerdict, lifeShown, mark, misfitsOf, quantilesOf } from "./answer.js";
 import { getJson } from "./api.js";
 import { button, byId, debounce, element, show } from "./dom.js";
-import { bandOf, count, cycles, duration, fixed, moment, percent, scientific, sentence, significant, words } from "./format.js";
+import { bandOf, count, cycles, duration, fixed, moment, percent, sentence, words } from "./format.js";
 import { cancelJob, changeJob, confirmDelete, describe, editInPlace, hrefOf, isFinal, nameOf, openForm, stateBadge } from "./job.js";
 import { problemBox } from "./notices.js";
+import { rateShown, sized, spanned } from "./units.js";
 
 const PAGE = 50;
 /** Most that a list brings at once: so many are sorted by something else than their time. */
@@ -222,13 +223,13 @@ function answerOf({ kind, state, progress, problem, summary: s, ...job }) {
   }
   if (kind === "calibration" && s.paris_m) {
     const fit = kindOfMisfit(...misfitsOf(s));
-    const range = `ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 3)} to ${significant(s.delta_k_max_mpa_sqrt_m, 3)}`;
-    return [two(`m ${fixed(s.paris_m, 2)}`, `${scientific(s.rate_at_pivot_mm_per_cycle, 3)} mm/cycle at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 3)}`), "", fit ? sign(fit, range) : range];
+    const range = `ΔK ${spanned(s.delta_k_min_mpa_sqrt_m, s.delta_k_max_mpa_sqrt_m, "MPa√m", 3)}`;
+    return [two(`m ${fixed(s.paris_m, 2)}`, `${rateShown(s.rate_at_pivot_mm_per_cycle, 3)} at ΔK ${sized(s.pivot_delta_k_mpa_sqrt_m, "MPa√m", 3)}`), "", fit ? sign(fit, range) : range];
   }
   const factors = (s.tips ?? []).flatMap((tip) => Object.values(tip.methods ?? {})).filter((read) => Number.isFinite(read.k_i_mpa_sqrt_m));
   if (kind === "sif" && factors.length > 0) {
     const most = factors.reduce((one, other) => (other.k_i_mpa_sqrt_m > one.k_i_mpa_sqrt_m ? other : one));
-    return [two(`${significant(most.k_i_mpa_sqrt_m, 4)} MPa√m`, `K II ${significant(Math.abs(most.k_ii_mpa_sqrt_m) < 1e-6 * most.k_i_mpa_sqrt_m ? 0 : most.k_ii_mpa_sqrt_m, 3)} MPa√m`), ""];
+    return [two(sized(most.k_i_mpa_sqrt_m, "MPa√m", 4), `K II ${sized(Math.abs(most.k_ii_mpa_sqrt_m) < 1e-6 * most.k_i_mpa_sqrt_m ? 0 : most.k_ii_mpa_sqrt_m, "MPa√m", 3)}`), ""];
   }
   if (kind === "sweep" && s.life_cycles?.p50) {
     const figure = (value) => cycles(Math.round(value));

@@ -1,7 +1,7 @@
 // Units that the page shows: everything comes in mm, MPa and MPa√m; a switch, kept by the browser, has every figure shown in inch, ksi and ksi√in.
 // Words change where they enter the document, charts along their axes; fields have the keys of the shown units.
 
-import { fixed, significant } from "./format.js";
+import { fixed, scientific, significant } from "./format.js";
 
 export const INCH = 25.4; // mm
 const KSI = 4.4482216152605e3 / INCH ** 2; // MPa
@@ -85,6 +85,12 @@ export const lengthAlone = (mm, decimals) => fixed(inShown(mm, "mm"), decimals +
 
 /** A metric value with its unit and so many significant digits of the number that is shown. */
 export const sized = (value, unit, digits) => `${significant(inShown(value, unit), digits)} ${unitShown(unit)}`;
+
+/** The same of a range. */
+export const spanned = (from, to, unit, digits) => `${significant(inShown(from, unit), digits)} to ${sized(to, unit, digits)}`;
+
+/** A growth rate, mm/cycle, with its unit. */
+export const rateShown = (rate, digits) => `${scientific(inShown(rate, "mm/cycle"), digits)} ${unitShown("mm/cycle")}`;
 
 /** Ends of keys, metric and in US units, longer ones first. */
 const KEYS = { mpa_sqrt_m: "ksi_sqrt_in", mm_per_cycle: "in_per_cycle", mm: "in", mpa: "ksi", gpa: "msi", kn: "kip" };

@@ -345,7 +345,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.see("#job[data-job-state=succeeded]");
     page.see("[data-value=life_cycles]");
 
-    one_figure_has_one_rounding(&walk, &service);
+    one_figure_has_one_rounding(&walk, &service, &fit);
 
     // Stopped where it is, a run keeps its curve.
     let running = service.submit("predictions", &of("stopped", &SLOW.replace("spacing_mm = 0.8", "spacing_mm = 0.5")));
@@ -385,7 +385,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
 }
 
 /// What a fleet, a run without a stated error, an inspection and the view in inches show is said once.
-fn one_figure_has_one_rounding(walk: &Walk, service: &Server) {
+fn one_figure_has_one_rounding(walk: &Walk, service: &Server, fit: &str) {
     let page = &walk.browser;
     let run = |case: &str, options: Value| {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/cases");
@@ -434,6 +434,13 @@ fn one_figure_has_one_rounding(walk: &Walk, service: &Server) {
     let bars = page.run("return [...document.querySelectorAll('.plate-rule text')].map((one) => one.textContent)");
     assert!(bars.as_array().unwrap().iter().all(|bar| matches!(bar.as_str(), Some("0.5 inch" | "0.2 inch"))), "{bars}");
     walk.look("17_inches");
+    let law = service.get(&format!("/v1/calibrations/{fit}")).json()["summary"].clone();
+    page.open(&format!("{}/#/calibrations/{fit}", service.url));
+    page.see("[data-chart=rates] path[data-series=law]");
+    let least = format!("For ΔK {:.3} to ", law["delta_k_min_mpa_sqrt_m"].as_f64().unwrap() / 1.098_843_4);
+    let rate = format!("{:.2e}", law["rate_at_pivot_mm_per_cycle"].as_f64().unwrap() / 25.4).replace("e-", " × 10⁻");
+    assert_says(&shown("[data-part=result] .life"), &[&rate[..rate.len() - 1], "in/cycle"]);
+    assert_says(&shown("[data-part=result]"), &[least]);
     page.run("localStorage.setItem('perilife.units', 'si'); location.reload()");
     page.until("document.readyState === 'complete'");
 }
