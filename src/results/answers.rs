@@ -6,18 +6,17 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::axis::Axis;
-use super::band::Lives;
+use super::band::{Lives, at};
 use super::chart::{COMPUTED, INK, SECOND};
 use super::checks::is_bound_below;
 pub use super::fleet::Asked;
 use super::fleet::FleetReport;
-use super::format::{chance, clean, mm};
+use super::format::{PLAIN, chance, clean, mm};
 use super::output::write_file;
 use super::specimen_picture::sketch::Sketch;
 use perilife_base::columns::Table;
 use perilife_base::error::Result;
 use perilife_base::units::{MM, MPA_SQRT_M};
-use perilife_calibration::inspection::Inspection;
 use perilife_calibration::sweep::detection::Schedule;
 use perilife_growth::case::{Case, Engine, LawSource, Stop};
 use perilife_growth::predict::laws::growth_law;
@@ -45,7 +44,7 @@ impl Answers {
     /// Of a run; `lives` say when its plate is looked at and how its law scatters.
     /// Errors: a fleet in which nothing scatters, a run without K.
     pub fn of(case: &Case, prediction: &Prediction, lives: &Lives, asked: Asked) -> Result<Self> {
-        let inspections = lives.inspection().and_then(|inspection| InspectionsRecord::of(case, prediction, inspection, asked));
+        let inspections = InspectionsRecord::of(case, prediction, lives, asked);
         let run = whole(case, prediction, case.fleet.is_some() || asked.sensitivities);
         let of_whole = if matches!(run, Cow::Owned(_)) { &Lives::of(case, &run, is_bound_below(case, &run))? } else { lives };
         let of_fleet = |fleet| FleetReport::of(case, fleet, (prediction, lives.inspection()), (&run, of_whole), asked);
@@ -83,6 +82,9 @@ pub struct InspectionsRecord {
     pub a50_mm: f64,
     pub a90_mm: f64,
     pub interval_cycles: f64,
+    /// End of the life that they are of: that of the 5 % plate where there is a band.
+    #[serde(default)]
+    pub end_cycles: f64,
     /// Probability that all of them miss the crack.
     pub missed: f64,
     pub rows: Vec<InspectionRow>,
@@ -101,13 +103,12 @@ pub struct InspectionRow {
 
 impl InspectionsRecord {
     /// Of a run: the first at the length that the plate is inspected from or after the cycles that are asked, the others by the interval; `None`
-    /// where nobody asked. From that length on the crack grows by the quantile of the interval: the cycles of the run, stretched to its end.
-    pub fn of(case: &Case, prediction: &Prediction, inspection: &Inspection, asked: Asked) -> Option<Self> {
-        let (detection, at) = (asked.detection?, inspection.cycles_at);
-        let schedule =
-            Schedule { detection, cycles: [asked.first_inspection.unwrap_or(at), inspection.inspection_interval_cycles] };
-        let pace = inspection.remaining_cycles_p05.map_or(1.0, |low| low / inspection.remaining_cycles);
-        let cycles = |own: f64| if own > at { at + pace * (own - at) } else { own };
+    /// where nobody asked. Cycles are those of the 5 % plate where there is a band: its crack takes the path of the run ([`Lives::inspected`]).
+    pub fn of(case: &Case, prediction: &Prediction, lives: &Lives, asked: Asked) -> Option<Self> {
+        let (detection, inspection, knots) = (asked.detection?, lives.inspection()?, lives.inspected()?);
+        let cycles = |run: f64| at(&knots, run);
+        let first = asked.first_inspection.unwrap_or_else(|| cycles(inspection.cycles_at));
+        let schedule = Schedule { detection, cycles: [first, inspection.inspection_interval_cycles] };
         let of_tip = |row: &CurvePoint| inspection.tip.and_then(|tip| row.crack_length_of(&case.specimen, tip));
         let length = |row: &CurvePoint| of_tip(row).unwrap_or(row.crack_length);
         let (mut inspected, mut rows) = (schedule.begin(), Vec::new());
@@ -116,26 +117,33 @@ impl InspectionsRecord {
                 rows.push(InspectionRow { cycles, crack_length_mm: clean(crack_length / MM), pod, missed });
             };
             let ([from, to], [start, end]) = ([pair[0].cycles, pair[1].cycles], [length(&pair[0]), length(&pair[1])]);
-            let mut places = vec![(from, start), (to, end)];
-            if from < at && at < to {
-                // What lies before the length is not stretched.
-                places.insert(1, (at, start + (at - from) / (to - from) * (end - start)));
-            }
+            let inner = knots.iter().map(|[run, _]| *run).filter(|run| from < *run && *run < to);
+            let inner = inner.map(|run| (run, start + (run - from) / (to - from) * (end - start)));
+            let places: Vec<(f64, f64)> = std::iter::once((from, start)).chain(inner).chain([(to, end)]).collect();
             for part in places.windows(2) {
                 inspected.grow([cycles(part[0].0), cycles(part[1].0)], [part[0].1, part[1].1], &mut told);
             }
         }
         let [a50_mm, a90_mm] = [detection.a50, detection.a90].map(|length| clean(length / MM));
-        let missed = rows.last().map_or(1.0, |row| row.missed);
-        Some(InspectionsRecord { a50_mm, a90_mm, interval_cycles: schedule.cycles[1], missed, rows })
+        let (missed, end_cycles) = (rows.last().map_or(1.0, |row| row.missed), knots.last()?[1]);
+        Some(InspectionsRecord { a50_mm, a90_mm, interval_cycles: schedule.cycles[1], end_cycles, missed, rows })
     }
 
     pub fn words(&self) -> String {
         let (count, missed) = (self.rows.len(), chance(self.missed));
         let [half, most] = [self.a50_mm, self.a90_mm].map(|length| mm(length * MM));
+        let first = self.rows.first().map_or_else(String::new, |row| format!(", first at {} cycles", PLAIN.whole(row.cycles)));
         format!(
-            "  POD            {count} inspections; all miss the crack: {missed} (independence assumed; a50 {half} mm, a90 {most} mm)"
+            "  POD            {count} inspections{first}; all miss the crack: {missed} (independence assumed; a50 {half} mm, a90 {most} mm)"
         )
+    }
+
+    /// Why there is none.
+    pub fn warning(&self, first: f64) -> Option<String> {
+        let [first, end] = [first, self.end_cycles].map(|cycles| PLAIN.whole(cycles));
+        let words = format!("inspections: first at {first} cycles, after the end of the inspected life at {end} cycles: the crack is never \
+             inspected (non-conservative); set --first-inspection below {end}, or remove it");
+        self.rows.is_empty().then_some(words)
     }
 }
 

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::curve::{Row, curve};
 use super::format::{PLAIN, digits, short, two_digits};
 use perilife_base::error::{Result, input};
+use perilife_base::monotone::Monotone;
 use perilife_base::units::MM;
 use perilife_calibration::inspection::{InspectFrom, Inspection, TipLengths};
 use perilife_calibration::population::intervals::Specimen;
@@ -122,6 +123,28 @@ impl Lives {
         self.inspection.as_ref()
     }
 
+    /// Cycles of the run and those of the plate that is inspected, straight between them: at the start, the last reading of the plate itself, the
+    /// length that it is inspected from, and the end. That plate is the 5 % plate where there is a band.
+    pub fn inspected(&self) -> Option<Vec<[f64; 2]>> {
+        let inspection = self.inspection.as_ref()?;
+        let (run, life) = (inspection.cycles_at, inspection.life_cycles);
+        let mut knots = vec![[0.0; 2]];
+        let reached = match (&self.band, &self.own) {
+            (Ok(_), Some(own)) => {
+                let read = [life - own.left.cycles, own.cycles];
+                knots.push(read);
+                read[1] + own.left.quantiles[0] / own.left.cycles * (run - read[0])
+            }
+            (Ok((_, band)), None) => {
+                Monotone::new(self.rows.iter().zip(&band.reached).map(|(row, reached)| [row.cycles, reached[0]])).at(run)
+            }
+            (Err(_), _) => run,
+        };
+        knots.extend([[run, reached], [life, reached + inspection.remaining_cycles_p05.unwrap_or(life - run)]]);
+        knots.dedup_by(|after, before| after[0] <= before[0]);
+        (knots.len() > 1).then_some(knots)
+    }
+
     pub fn life(&self) -> Option<Quantiles> {
         self.band.as_ref().ok().and_then(|(_, band)| band.reached.last().copied())
     }
@@ -187,6 +210,13 @@ impl Lives {
         lines.extend(self.inspection.iter().flat_map(|inspection| inspection_words(inspection, self.per_pass, of_fleet)));
         lines
     }
+}
+
+/// Of knots `[x, y]` with straight lines between them, two at least.
+pub fn at(knots: &[[f64; 2]], x: f64) -> f64 {
+    let after = knots.partition_point(|knot| knot[0] < x).clamp(1, knots.len() - 1);
+    let ([from, low], [to, high]) = (knots[after - 1], knots[after]);
+    low + (x - from) / (to - from) * (high - low)
 }
 
 fn inspection_words(inspection: &Inspection, per_pass: Option<f64>, of_fleet: Option<f64>) -> Vec<String> {

@@ -37,7 +37,7 @@ fn write_readings(folder: &Path, name: &str, to_mm: f64, factor: f64) {
 #[test]
 fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
     let dir = folder();
-    let (stdout, _) = done(dir.path(), "predict case.toml --out run --inspect-from 20");
+    let (stdout, _) = done(dir.path(), "predict case.toml --out run --inspect-from 20 --pod 20,30");
     assert_says(
         &stdout,
         &[
@@ -58,6 +58,16 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
     let inspection = &result["inspection"];
     let [left, every] = ["remaining_cycles_p05", "inspection_interval_cycles"].map(|key| inspection[key].as_f64().unwrap());
     assert!((left / every - 3.0).abs() < 1e-9 && inspection["has_band"] == true, "{inspection}");
+
+    // The 5 % plate is inspected before it fails: at the length that the interval is of, and by its own cycles.
+    let rows = result["inspections"]["rows"].as_array().unwrap();
+    let [first, last] = [&rows[0], &rows[2]].map(|row| row["cycles"].as_f64().unwrap());
+    assert!(rows.len() == 3 && first < inspection["cycles_at"].as_f64().unwrap() && last < low, "{rows:?} {band}");
+    assert!((rows[0]["crack_length_mm"].as_f64().unwrap() - 20.0).abs() < 0.01, "{rows:?}");
+    let late = format!("predict case.toml --out late --inspect-from 20 --pod 20,30 --first-inspection {middle:.0}");
+    let (_, said) = done(dir.path(), &late);
+    assert!(said.contains("inspections: first at ") && said.contains("the crack is never inspected"), "{said}");
+    assert!(json(dir.path().join("late/result.json"))["warnings"].to_string().contains("inspections: first at "));
 
     let table = fs::read_to_string(dir.path().join("run/a_n.csv")).unwrap();
     let head: Vec<&str> = table.lines().next().unwrap().split(',').collect();
@@ -87,10 +97,14 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
 fn readings_of_the_plate_narrow_what_it_has_left() {
     let dir = folder();
     write_readings(dir.path(), "own.csv", 25.0, 0.9);
-    let (stdout, _) = done(dir.path(), "predict case.toml --out run --measured own.csv --inspect-from 30");
+    let (stdout, _) = done(dir.path(), "predict case.toml --out run --measured own.csv --inspect-from 30 --pod 20,30");
     assert!(stdout.contains("  This plate     last reading 25.0 mm at "), "{stdout}");
     let result = json(dir.path().join("run/result.json"));
     let (own, lot) = (&result["measured"], &result["measured"]["of_lot"]);
+    let [read, left] = ["cycles", "remaining_cycles_p05"].map(|key| own[key].as_f64().unwrap());
+    let looks = &result["inspections"];
+    let [first, end] = [&looks["rows"][0]["cycles"], &looks["end_cycles"]].map(|cycles| cycles.as_f64().unwrap());
+    assert!(read < first && (end / (read + left) - 1.0).abs() < 0.03, "from the last reading: {looks} {own}");
     let keys = ["remaining_cycles_p05", "remaining_cycles_p50", "remaining_cycles_p95"];
     let [own, lot] = [own, lot].map(|object| keys.map(|key| object[key].as_f64().unwrap()));
     assert!(own[2] / own[0] < 0.8 * lot[2] / lot[0], "{own:?} {lot:?}");

@@ -21,7 +21,7 @@ fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
         &stdout,
         "case: life 5 %  |   Nominal run    life  |  cycles (500 plates)\n | \
         Fleet          from a = 10.000 mm to the end: 5 %  | ; inspected after  | \
-        POD            3 inspections; all miss the crack: 3.07e-2 (independence assumed; a50 12 mm, a90 25 mm) | \
+        POD            3 inspections, first at  |  cycles; all miss the crack: 3.07e-2 (independence assumed; a50 12 mm, a90 25 mm) | \
         Sensitivities  load -5 % +1",
     );
     let run = dir.path().join("run");

@@ -1,5 +1,6 @@
 //! The band of lives on a plate that was run: rows, what has none and why, inspections, digits.
 
+use perilife_base::monotone::Monotone;
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_calibration::inspection::{InspectFrom, Inspection};
 use perilife_calibration::population::fit;
@@ -167,12 +168,21 @@ fn an_inspection_interval_comes_from_the_five_percent_life() {
     lives.inspect(from).unwrap();
     // Inspections follow the crack of the interval, a quarter of its 5 % life each; on that of the run there would be more of them.
     let asked = Asked { detection: Some("20,40".parse().unwrap()), ..Asked::default() };
-    let inspections = InspectionsRecord::of(&case, &run, lives.inspection().unwrap(), asked).unwrap();
+    let inspections = InspectionsRecord::of(&case, &run, &lives, asked).unwrap();
     let rows = &inspections.rows;
     let share = with_band.remaining_cycles_p05.unwrap() / with_band.remaining_cycles;
     assert!(rows.len() == 4 && share < 0.9, "{inspections:?}");
     let third = run.cycles_at(rows[2].crack_length_mm * MM).unwrap() - with_band.cycles_at;
     assert!((third / (0.5 * with_band.remaining_cycles) - 1.0).abs() < 5e-3, "half of either life: {inspections:?}");
+    // By the clock of the 5 % plate, which has failed before the median one is as long.
+    let by_row = |column: usize| Monotone::new(curve::curve(&Row::of_run(&case, &run)).into_iter().zip(&lives.columns().unwrap().reached).map(|([a, _], n)| [a, n[column]]));
+    let first = by_row(0).at(20.0);
+    assert!((rows[0].cycles / first - 1.0).abs() < 1e-3 && first < 0.9 * with_band.cycles_at, "{inspections:?}, {first}");
+    assert!((inspections.end_cycles / lives.life().unwrap()[0] - 1.0).abs() < 0.02, "{inspections:?} {:?}", lives.life());
+    let late = InspectionsRecord::of(&case, &run, &lives, Asked { first_inspection: Some(0.99 * run.life_cycles()), ..asked });
+    let late = late.unwrap();
+    assert!(late.rows.is_empty() && late.missed == 1.0 && late.warning(1e9).unwrap().contains("never inspected"), "{late:?}");
+    assert_eq!(inspections.warning(1.0), None);
     let words = lives.words(None).join("\n");
     assert!(words.contains("Inspect every  ") && words.contains("(5 % remaining life / 4)"), "{words}");
     let record = RunRecord::of(&case, &run, &Judgement::default(), &lives, &Quality::default());

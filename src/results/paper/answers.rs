@@ -20,7 +20,7 @@ const INSPECTIONS_MOST: usize = 20;
 /// Their sections; empty for a run without them.
 pub fn sections(run: &RunRecord, drawings: &Drawings) -> String {
     let per_pass = run.spectrum.as_ref().map(|spectrum| spectrum.cycles_per_pass);
-    let mut page = run.inspections.as_ref().map_or_else(String::new, inspections);
+    let mut page = run.inspections.as_ref().map_or_else(String::new, |found| inspections(run, found));
     page += &run.fleet.as_ref().map_or_else(String::new, |found| fleet(found, per_pass, drawings));
     page + &run.sensitivities.as_ref().map_or_else(String::new, |all| sensitivities(all, drawings))
 }
@@ -30,7 +30,7 @@ fn probability(value: f64) -> String {
     if value >= 1e-3 { PRINT.fixed(value, 3) } else { chance(value) }
 }
 
-fn inspections(found: &InspectionsRecord) -> String {
+fn inspections(run: &RunRecord, found: &InspectionsRecord) -> String {
     let row = |row: &InspectionRow| {
         vec![PRINT.whole(row.cycles), PRINT.fixed(row.crack_length_mm, 2), probability(row.pod), probability(row.missed)]
     };
@@ -40,7 +40,9 @@ fn inspections(found: &InspectionsRecord) -> String {
         }
         _ => String::new(),
     };
-    let head = ["Cycles", "Crack length, mm", "POD", "Cumulative miss probability"].map(text);
+    let has_band = run.inspection.as_ref().is_some_and(|inspection| inspection.has_band);
+    let cycles = if has_band { "Cycles (5 % plate)" } else { "Cycles" };
+    let head = [cycles, "Crack length, mm", "POD", "Cumulative miss probability"].map(text);
     let table = table("", &head, found.rows.iter().take(INSPECTIONS_MOST).map(row));
     format!(
         "{}<p>Probability that all inspections miss: {} (independence of inspections assumed).</p>\n{table}{more}",
