@@ -19,7 +19,7 @@ use perilife_calibration::calibrate::Fitted;
 use perilife_calibration::case::CalibrationCase;
 use perilife_calibration::fit::Fit;
 use perilife_calibration::rates::STEP_MIN;
-use perilife_calibration::readings::readings;
+use perilife_calibration::readings::{OUTSIDE, outside_window, readings};
 use perilife_calibration::record::FitRecord;
 use perilife_calibration::results::{fit_curves, fitted_rates, left_out, rates_beside_law, rates_taken};
 use perilife_growth::case::{Case, RECORD};
@@ -261,7 +261,7 @@ pub fn criteria(calibration: &CalibrationCase, left_out: &[LeaveOut], delta_k: &
     all.push(ligament(calibration, &case, delta_k));
     all.push(steps(&calibration.read));
     all.push(symmetry(&calibration.read, &case));
-    all.push(readings_left_out(left_out, calibration.left_out.len()));
+    all.push(readings_left_out(left_out, calibration));
     all
 }
 
@@ -316,9 +316,11 @@ fn symmetry(curves: &[MeasuredCurve], case: &Case) -> Criterion {
     criterion(NAME, asked, format!("{:.2} mm", found / MM), Some(holds), remark)
 }
 
-/// `by_user`: number of those that the user excluded.
-fn readings_left_out(left_out: &[LeaveOut], by_user: usize) -> Criterion {
-    let found = if left_out.is_empty() { "none".to_owned() } else { left_out.len().to_string() };
+/// Those that the user excluded, and how many others are outside the fit window.
+fn readings_left_out(left_out: &[LeaveOut], calibration: &CalibrationCase) -> Criterion {
+    let (by_user, outside) = (calibration.left_out.len(), outside_window(calibration, left_out));
+    let excluded = if left_out.is_empty() { "none".to_owned() } else { left_out.len().to_string() };
+    let found = if outside > 0 { format!("{excluded}; {outside} {OUTSIDE}") } else { excluded };
     let reasons: Vec<String> = left_out.iter().map(|one| format!("{} ({})", one.place(), one.reason)).collect();
     criterion("Excluded readings", "with reason", found, (left_out.len() == by_user).then_some(true), reasons.join("; "))
 }

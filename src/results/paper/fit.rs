@@ -13,7 +13,7 @@ use crate::pictures::fit::{FitTables, RateFitted, law_svg};
 use crate::pictures::plate::{Plate, plate_svg};
 use perilife_base::units::shown::per;
 use perilife_calibration::lack_of_fit::Misfit;
-use perilife_calibration::readings::Reading;
+use perilife_calibration::readings::{OUTSIDE, Reading};
 use perilife_calibration::record::{CandidateRecord, LivesRecord, RatesRecord, SpecimenRecord};
 use perilife_growth::case::record::{FittedLaw, SourceFile};
 
@@ -217,7 +217,7 @@ fn readings(readings: &[Reading]) -> String {
     let row = |(place, reading): (usize, &Reading)| {
         let flags =
             [quoted(&reading.marks.replace('_', " ")), if reading.method == "secant" { "secant".into() } else { "".into() }];
-        let excluded = Some(quoted(&reading.left_out)).filter(|why| !why.is_empty()).map(|why| format!("excluded: {why}"));
+        let excluded = Some(quoted(&reading.left_out)).filter(|why| !why.is_empty()).map(|why| if why == OUTSIDE { why } else { format!("excluded: {why}") });
         let flags: Vec<String> = flags.into_iter().filter(|words| !words.is_empty()).chain(excluded.clone()).collect();
         let cells = vec![
             (place + 1).to_string(),
@@ -235,7 +235,7 @@ fn readings(readings: &[Reading]) -> String {
         [number("No."), text("Specimen"), number("N, cycles"), number("a, mm"), number("ΔK, MPa√m"), number("da/dN, mm/cycle")];
     format!(
         "<h2>Readings and growth rates</h2>\n<p class=\"key\">N and a as read. ΔK and da/dN at the middle of the readings of the rate; \
-         –: no rate. Flagged readings are used; excluded readings state the reason.</p>\n{}",
+         –: no rate. Flagged readings are used; gray ones are not: excluded with the reason, or outside the fit window.</p>\n{}",
         table("readings", &[&head[..], &[text("Flags")]].concat(), readings.iter().enumerate().map(row))
     )
 }
