@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::checks::NONE_PERCENT;
 use super::curve::{Row, curve};
 use super::format::{PLAIN, digits, short, two_digits};
 use perilife_base::error::{Result, input};
@@ -12,6 +13,7 @@ use perilife_calibration::population::intervals::Specimen;
 use perilife_calibration::population::plate::{Left, NoBand, Plate, PlateBand, Quantiles};
 use perilife_growth::case::{Case, Lot, Method, Model, coarse_points, usual_nodes};
 use perilife_growth::predict::error_estimate::{ErrorEstimate, estimate};
+use perilife_growth::predict::fit_use::life_share_extrapolated;
 use perilife_growth::predict::moment::StressField;
 use perilife_growth::predict::{Prediction, Silent, predict};
 use perilife_measured::MeasuredCurve;
@@ -61,6 +63,8 @@ pub struct Lives {
     /// Whether the case says which lot its plate is of.
     is_lot_given: bool,
     is_lower_bound: bool,
+    /// Share of the life outside the tested ΔK.
+    share_outside: Option<f64>,
     tips: Option<TipLengths>,
     per_pass: Option<f64>,
     rows: Vec<Row>,
@@ -85,6 +89,7 @@ impl Lives {
             band: plate.and_then(|plate| plate.band().map(|band| (plate, band))),
             is_lot_given: !case.echo["fatigue"]["lot"].is_null(),
             is_lower_bound,
+            share_outside: life_share_extrapolated(case, prediction),
             tips: TipLengths::of_run(case, prediction),
             per_pass: case.loading.spectrum.as_ref().map(|spectrum| spectrum.per_pass),
             rows: Row::of_run(case, prediction),
@@ -155,10 +160,10 @@ impl Lives {
     }
 
     pub(super) fn band_record(&self) -> Option<BandRecord> {
-        let (plate, band) = self.band.as_ref().ok()?;
+        let (plate, _) = self.band.as_ref().ok()?;
         let [cycles_p05, cycles_p50, cycles_p95] = self.life()?;
         let (specimens, assumed_scatter) = (plate.lot.specimens.len(), plate.lot.assumed_scatter);
-        let share_outside = band.share_outside;
+        let share_outside = self.share_outside.unwrap_or(0.0);
         Some(BandRecord { cycles_p05, cycles_p50, cycles_p95, specimens, assumed_scatter, share_outside, lot: plate.of })
     }
 
@@ -184,16 +189,15 @@ impl Lives {
     pub fn words(&self, of_fleet: Option<f64>) -> Vec<String> {
         let mut lines = Vec::new();
         match &self.band {
-            Ok((plate, band)) => {
+            Ok((plate, _)) => {
                 let assumed = if plate.lot.assumed_scatter { "; scatter assumed" } else { "" };
                 let lot = if plate.of == Lot::Same { "same lot" } else { "other lot" };
                 let other = if self.is_lot_given { "" } else { " (for another lot: fatigue.lot = \"other\")" };
                 let count = plate.lot.specimens.len();
                 let specimens = if count == 1 { "1 specimen".to_owned() } else { format!("{count} specimens") };
-                let outside = match band.share_outside {
-                    share if share > 0.0 => format!("; {:.1} % of the life outside the tested ΔK", 100.0 * share),
-                    _ => String::new(),
-                };
+                let share = self.share_outside.map(|share| 100.0 * share).filter(|percent| *percent >= NONE_PERCENT);
+                let outside =
+                    share.map_or_else(String::new, |share| format!("; {share:.1} % of the life outside the tested ΔK"));
                 lines.push(format!("  Scatter band   from {specimens}, {lot}{other}{assumed}{outside}"));
             }
             Err(why) => lines.push(format!("  Scatter band   not available: {why}")),

@@ -11,6 +11,9 @@ use perilife_growth::case::Case;
 use perilife_growth::predict::judgement;
 use perilife_growth::predict::{Prediction, StopReason};
 
+/// Share of a life, percent, below which it is none with one decimal.
+pub const NONE_PERCENT: f64 = 0.05;
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {

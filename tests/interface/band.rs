@@ -54,7 +54,7 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
     assert_eq!((&band["specimens"], &band["assumed_scatter"], &band["lot"]), (&1.into(), &true.into(), &"same".into()));
     let [low, middle, high] = ["cycles_p05", "cycles_p50", "cycles_p95"].map(|key| band[key].as_f64().unwrap());
     assert!(low < 0.85 * middle && high > 1.15 * middle, "{band}");
-    assert!(result["no_band"].is_null());
+    assert!(result["no_band"].is_null() && band["share_outside"] == result["life_share_extrapolated"], "one share: {band}");
     let inspection = &result["inspection"];
     let [left, every] = ["remaining_cycles_p05", "inspection_interval_cycles"].map(|key| inspection[key].as_f64().unwrap());
     assert!((left / every - 3.0).abs() < 1e-9 && inspection["has_band"] == true, "{inspection}");

@@ -75,6 +75,10 @@ fn the_example_runs_through_break_through_to_its_end() {
     assert!(result["no_error_estimate"].as_str().unwrap().contains("after breakthrough"));
     let names: Vec<&str> = result["checks"].as_array().unwrap().iter().map(|check| check["name"].as_str().unwrap()).collect();
     assert!(names.contains(&"part_through_factors") && names.contains(&"part_through_range"), "{names:?}");
+    let change = |key: &str| 100.0 * (number(key) / life - 1.0);
+    let [less, more] = ["life_cycles_if_k_is_larger", "life_cycles_if_k_is_smaller"].map(change);
+    let words = format!("±5 % (source), {less:+.1} % to {more:+.1} % in life");
+    assert!(result["checks"].to_string().contains(&words), "{words}: {}", result["checks"]);
     let run = dir.path().join("run");
     let table = fs::read_to_string(run.join("a_n.csv")).unwrap();
     let head: Vec<&str> = table.lines().next().unwrap().split(',').collect();

@@ -124,6 +124,10 @@ fn extrapolation_has_two_sides() {
     assert!(above.words.contains("30.0 % of life at ΔK above 17.00 MPa√m"));
     assert_eq!(validity(&of_run(&case, &run)), Validity::NotValid);
     assert_eq!(of_run(&case, &run)[0].name, "extrapolation_above", "what fails comes first");
+    // What lies inside has no side.
+    let inside = Case { law: made_up_case::fitted(1.0, 90.0), ..case.clone() };
+    let words = named(&inside, &run, "extrapolation_above").words;
+    assert_eq!(words, "Extrapolation: none above 90.00 MPa√m, the highest tested");
     assert_eq!(refusal(&case, &run).unwrap().exit_code(), 2);
     let words = made_up_run::judged(&case, &run).words(&case, &run);
     assert!(words[0].contains(": no valid life (100 cycles computed; see the failed check)"), "{}", words[0]);

@@ -52,8 +52,6 @@ pub struct Plate {
     t: [f64; 3],
     /// First and last row between which ΔK is known and in range.
     known: [usize; 2],
-    /// Share of the life behind the last of them whose ΔK is too high.
-    beyond: f64,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +60,6 @@ pub struct PlateBand {
     pub reached: Vec<Quantiles>,
     /// Cycles from there to the end of the run; NaN where ΔK is not known.
     pub left: Vec<Quantiles>,
-    pub share_outside: f64,
 }
 
 /// What is left at a crack length, m.
@@ -176,7 +173,6 @@ impl Plate {
             zones,
             t: [-t, 0.0, t],
             known: [first, last],
-            beyond: too_high.map_or(0.0, |_| (life - rows[last].cycles) / life),
             lot,
         })
     }
@@ -211,7 +207,6 @@ impl Plate {
         Ok(PlateBand {
             reached: (0..count).map(reached_at).collect(),
             left: (0..count).map(left_at).collect(),
-            share_outside: (whole.share_outside * (1.0 - self.beyond) + self.beyond).min(1.0),
         })
     }
 

@@ -1,6 +1,6 @@
 //! The checks themselves: strengths, validity of K, range of the law.
 
-use super::{Check, Side, Verdict};
+use super::{Check, NONE_PERCENT, Side, Verdict};
 use crate::format::{PLAIN, short};
 use crate::spectrum::retarded;
 use perilife_base::input::Folder;
@@ -136,18 +136,23 @@ fn two_digits(length: f64) -> String {
 fn extrapolation(case: &Case, prediction: &Prediction) -> Vec<Check> {
     let Some([low, high]) = fit_use::fitted_range(case) else { return vec![unknown_range()] };
     let Some([below, above]) = fit_use::life_shares_outside(case, prediction) else { return Vec::new() };
-    let of_side = |name, share: f64, side, range: String, remedy| {
-        let words = format!("Extrapolation: {:.1} % of life at ΔK {range}", 100.0 * share);
-        Check::sized(name, 100.0 * share, share > OUTSIDE_CAUTION, side, words, remedy)
+    let of_side = |name, share: f64, side: Side, range: String, remedy| {
+        let percent = 100.0 * share;
+        let words = match percent < NONE_PERCENT {
+            true => format!("Extrapolation: none {range}"),
+            false if side == Side::Conservative => format!("Extrapolation: {percent:.1} % of life at ΔK {range} (usually conservative)"),
+            false => format!("Extrapolation: {percent:.1} % of life at ΔK {range} (non-conservative)"),
+        };
+        Check::sized(name, percent, share > OUTSIDE_CAUTION, side, words, remedy)
     };
     let lower = match case.fatigue.threshold > 0.0 {
         true => "test at lower ΔK",
         false => "test at lower ΔK, or set fatigue.delta_k_threshold_mpa_sqrt_m",
     };
     let higher = "test at higher ΔK, or stop earlier (stop.crack_length_mm)";
-    let words = format!("below {low:.2} MPa√m, the lowest tested (usually conservative)");
+    let words = format!("below {low:.2} MPa√m, the lowest tested");
     let of_lower = of_side("extrapolation_below", below, Side::Conservative, words, lower);
-    let words = format!("above {high:.2} MPa√m, the highest tested (non-conservative)");
+    let words = format!("above {high:.2} MPa√m, the highest tested");
     let of_higher = of_side("extrapolation_above", above, Side::NonConservative, words, higher);
     vec![of_lower, of_higher.failed_if(is_refused(case, above))]
 }
@@ -222,9 +227,9 @@ fn part_through(case: &Case, prediction: &Prediction) -> Vec<Check> {
     };
     let of_error = |found: &PartThroughLife| {
         let [shorter, longer] = found.life_factors.map(|factor| 100.0 * (factor - 1.0));
-        let larger = if longer.is_finite() { format!("{longer:+.0} %") } else { "unlimited".to_owned() };
+        let larger = if longer.is_finite() { format!("{longer:+.1} %") } else { "unlimited".to_owned() };
         let percent = if longer.is_finite() { longer.max(-shorter) } else { 100.0 };
-        let words = format!("±{:.0} % (source), {shorter:+.0} % to {larger} in life", 100.0 * STATED_ERROR);
+        let words = format!("±{:.0} % (source), {shorter:+.1} % to {larger} in life", 100.0 * STATED_ERROR);
         check("part_through_factors", percent, words, "apply a factor to the life, or compare with a test")
     };
     let of_range = |found: &PartThroughLife| {
