@@ -17,6 +17,7 @@ use super::specimen_picture::sketch::Sketch;
 use perilife_base::columns::Table;
 use perilife_base::error::Result;
 use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_calibration::population::plate::Quantiles;
 use perilife_calibration::sweep::detection::Schedule;
 use perilife_growth::case::{Case, Engine, LawSource, Stop};
 use perilife_growth::predict::laws::growth_law;
@@ -68,8 +69,9 @@ impl Answers {
         self.fleet.as_ref().map(FleetReport::headline)
     }
 
-    pub fn words(&self) -> Vec<String> {
-        let inspections = self.inspections.iter().map(InspectionsRecord::words);
+    /// In lines of a summary; `known` says how well the interval of the inspections is known.
+    pub fn words(&self, known: Option<Quantiles>) -> Vec<String> {
+        let inspections = self.inspections.iter().zip(known).map(|(all, known)| all.words(&known));
         let sensitivities = self.sensitivities.iter().map(Sensitivities::words);
         inspections.chain(self.fleet.iter().flat_map(FleetReport::words)).chain(sensitivities).collect()
     }
@@ -129,10 +131,11 @@ impl InspectionsRecord {
         Some(InspectionsRecord { a50_mm, a90_mm, interval_cycles: schedule.cycles[1], end_cycles, missed, rows })
     }
 
-    pub fn words(&self) -> String {
+    pub fn words(&self, known: &Quantiles) -> String {
         let (count, missed) = (self.rows.len(), chance(self.missed));
         let [half, most] = [self.a50_mm, self.a90_mm].map(|length| mm(length * MM));
-        let first = self.rows.first().map_or_else(String::new, |row| format!(", first at {} cycles", PLAIN.whole(row.cycles)));
+        let cycles = |cycles: f64| PLAIN.promised_by(cycles, self.interval_cycles, known);
+        let first = self.rows.first().map_or_else(String::new, |row| format!(", first at {} cycles", cycles(row.cycles)));
         format!(
             "  POD            {count} inspections{first}; all miss the crack: {missed} (independence assumed; a50 {half} mm, a90 {most} mm)"
         )

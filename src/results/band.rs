@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::checks::NONE_PERCENT;
 use super::curve::{Row, curve};
-use super::format::{PLAIN, digits, short, two_digits};
+use super::format::{PLAIN, digits, short, two_digits, within};
 use perilife_base::error::{Result, input};
 use perilife_base::monotone::Monotone;
 use perilife_base::units::MM;
@@ -36,6 +36,9 @@ impl BandRecord {
         [self.cycles_p05, self.cycles_p50, self.cycles_p95]
     }
 }
+
+/// Figures of a fleet have four digits.
+pub const OF_FLEET: Quantiles = [1.0; 3];
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Remaining {
@@ -185,8 +188,8 @@ impl Lives {
         })
     }
 
-    /// What the band rests on, and what was asked, in lines of a summary; a fleet has an interval of its own, cycles.
-    pub fn words(&self, of_fleet: Option<f64>) -> Vec<String> {
+    /// What the band rests on, and what was asked, in lines of a summary; a fleet has an interval of its own, cycles. `error` is that of the life.
+    pub fn words(&self, of_fleet: Option<f64>, error: Option<f64>) -> Vec<String> {
         let mut lines = Vec::new();
         match &self.band {
             Ok((plate, _)) => {
@@ -211,7 +214,7 @@ impl Lives {
                 band_words(&own.of_lot.quantiles)
             ));
         }
-        lines.extend(self.inspection.iter().flat_map(|inspection| inspection_words(inspection, self.per_pass, of_fleet)));
+        lines.extend(self.inspection.iter().flat_map(|inspection| inspection_words(inspection, self.per_pass, of_fleet, error)));
         lines
     }
 }
@@ -223,13 +226,19 @@ pub fn at(knots: &[[f64; 2]], x: f64) -> f64 {
     low + (x - from) / (to - from) * (high - low)
 }
 
-fn inspection_words(inspection: &Inspection, per_pass: Option<f64>, of_fleet: Option<f64>) -> Vec<String> {
+fn inspection_words(
+    inspection: &Inspection,
+    per_pass: Option<f64>,
+    of_fleet: Option<f64>,
+    error: Option<f64>,
+) -> Vec<String> {
     let (length, factor, quantiles) = (short(inspection.crack_length_mm), inspection.factor, inspection.quantiles());
-    let left = quantiles.map_or_else(|| format!("{} cycles", PLAIN.whole(inspection.remaining_cycles)), |all| band_words(&all));
+    let left = || format!("{} cycles", PLAIN.by_error(inspection.remaining_cycles, error));
+    let left = quantiles.map_or_else(left, |all| band_words(&all));
     let every = match (of_fleet, quantiles) {
-        (Some(every), _) => format!("{} (5 % remaining life of the fleet / {factor})", every_words(every, None, per_pass)),
-        (None, Some(_)) => format!("{} (5 % remaining life / {factor})", interval_words(inspection, per_pass)),
-        (None, None) => format!("{} (remaining life / {factor}; no scatter band)", interval_words(inspection, per_pass)),
+        (Some(every), _) => format!("{} (5 % remaining life of the fleet / {factor})", every_words(every, &OF_FLEET, per_pass)),
+        (None, Some(_)) => format!("{} (5 % remaining life / {factor})", interval_words(inspection, per_pass, error)),
+        (None, None) => format!("{} (remaining life / {factor}; no scatter band)", interval_words(inspection, per_pass, error)),
     };
     let least = if inspection.life_is_lower_bound { "≥ " } else { "" };
     let of_tip = inspection.tip.map_or_else(String::new, |tip| format!(" (crack of tip {tip})"));
@@ -242,14 +251,19 @@ pub fn no_band_to_narrow(curve: &MeasuredCurve, why: &str) -> perilife_base::err
 }
 
 /// An interval rounded down, since it is a promise, to the digits that a band deserves, and its passes under a spectrum.
-pub fn every_words(cycles: f64, band: Option<&Quantiles>, per_pass: Option<f64>) -> String {
+pub fn every_words(cycles: f64, band: &Quantiles, per_pass: Option<f64>) -> String {
     let passes =
         per_pass.map_or_else(String::new, |each| format!(" ({} passes)", short((100.0 * cycles / each).floor() / 100.0)));
     format!("{} cycles{passes}", PLAIN.promised(cycles, band))
 }
 
-pub fn interval_words(inspection: &Inspection, per_pass: Option<f64>) -> String {
-    every_words(inspection.inspection_interval_cycles, inspection.quantiles().as_ref(), per_pass)
+pub fn interval_words(inspection: &Inspection, per_pass: Option<f64>, error: Option<f64>) -> String {
+    every_words(inspection.inspection_interval_cycles, &known_within(inspection, error), per_pass)
+}
+
+/// How well an interval is known: as its band, else as the life is in percent.
+pub fn known_within(inspection: &Inspection, error: Option<f64>) -> Quantiles {
+    inspection.quantiles().unwrap_or_else(|| within(error))
 }
 
 /// `254 000 cycles (median; 90 % band 228 000 to 283 000)`, in the digits that the band supports.

@@ -6,11 +6,11 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::axis::Axis;
-use super::band::{Lives as Band, every_words};
+use super::band::{Lives as Band, OF_FLEET, every_words};
 use super::chart::{COMPUTED, Frame, LARGE, Mark, SECOND};
-use super::format::{PLAIN, chance, clean};
+use super::format::{Format, PLAIN, chance, clean};
 use super::output::write_file;
-use super::sweep::{LifeQuantiles, Lives};
+use super::sweep::{ABOVE, LifeQuantiles, Lives};
 use perilife_base::columns::Table;
 use perilife_base::error::Result;
 use perilife_base::units::MM;
@@ -178,13 +178,13 @@ impl FleetReport {
 
     /// 5 % and median life.
     pub fn headline(&self) -> String {
-        let [low, middle, _] = words_of(&self.record.life_cycles);
+        let [low, middle, _] = words_of(&self.record.life_cycles, PLAIN);
         format!("life 5 % {low}, median {middle} cycles ({} plates)", self.record.plates)
     }
 
     pub fn words(&self) -> Vec<String> {
         let FleetRecord { unlimited, lower_bounds, shorter_than_known: clipped, .. } = self.record;
-        let [_, _, high] = words_of(&self.record.life_cycles);
+        let [_, _, high] = words_of(&self.record.life_cycles, PLAIN);
         let laws = if self.record.laws_drawn { "" } else { "; one growth law for all" };
         let mut lines =
             vec![format!("  Fleet          95 % {high} cycles; {unlimited} unlimited, {lower_bounds} lower bounds{laws}")];
@@ -200,13 +200,14 @@ impl FleetReport {
 
     /// How long cracks can be found, and how likely they are not.
     fn looked_words(&self, looks: &FleetInspections) -> String {
-        let [low, middle, high] = words_of(&looks.detectable_to_critical_cycles);
+        let [low, middle, high] = words_of(&looks.detectable_to_critical_cycles, PLAIN);
         let (length, never_found) = (PLAIN.length(looks.detectable_mm * MM, 3), looks.break_before_detectable);
         let missed = match &self.lives.looked {
             Some(Looked { first, every, before_first, missed, .. }) => format!(
-                "; inspected after {first:.0} cycles, then every {}: all miss the crack of a plate: {} ({before_first} plates fail before the \
+                "; inspected after {} cycles, then every {}: all miss the crack of a plate: {} ({before_first} plates fail before the \
                  first)",
-                every_words(*every, None, self.per_pass),
+                PLAIN.promised(*first, &OF_FLEET),
+                every_words(*every, &OF_FLEET, self.per_pass),
                 chance(*missed)
             ),
             None if never_found > 0 => format!("; {never_found} plates fail before a detectable crack"),
@@ -217,10 +218,11 @@ impl FleetReport {
 }
 
 /// 5 %, median and 95 % in words.
-fn words_of(lives: &LifeQuantiles) -> [String; 3] {
+pub fn words_of(lives: &LifeQuantiles, format: Format) -> [String; 3] {
     [&lives.words.p05, &lives.words.p50, &lives.words.p95].map(|words| {
         let words = words.as_deref().unwrap_or("unknown");
-        words.parse::<f64>().map_or_else(|_| words.to_owned(), |life| PLAIN.significant(life, 4, f64::round))
+        let (above, figure) = words.split_at(if words.starts_with(ABOVE) { ABOVE.len() } else { 0 });
+        figure.parse::<f64>().map_or_else(|_| words.to_owned(), |life| format!("{above}{}", format.by_band(life, &OF_FLEET)))
     })
 }
 

@@ -69,7 +69,7 @@ impl Format {
         if !(value.is_finite() && value > 0.0) {
             return self.digits(&format!("{value}"));
         }
-        let place = value.log10().floor() as i32 + 1 - digits as i32;
+        let place = place(value, digits);
         let unit = 10f64.powi(place);
         self.digits(&format!("{:.*}", usize::try_from(-place).unwrap_or(0), to_whole(value / unit) * unit))
     }
@@ -80,13 +80,18 @@ impl Format {
 
     /// Cycles with the digits that their stated error deserves, in percent.
     pub fn by_error(self, cycles: f64, percent: Option<f64>) -> String {
-        let half = percent.map_or(UNSTATED, |percent| percent / 100.0);
-        self.by_band(cycles, &[1.0 - half, 1.0, 1.0 + half])
+        self.by_band(cycles, &within(percent))
     }
 
-    /// A promise, rounded down: with the digits that a band deserves, whole without one.
-    pub fn promised(self, cycles: f64, band: Option<&[f64; 3]>) -> String {
-        band.map_or_else(|| self.whole(cycles.floor()), |band| self.significant(cycles, digits(band), f64::floor))
+    /// A promise, rounded down to the digits that a band deserves.
+    pub fn promised(self, cycles: f64, band: &[f64; 3]) -> String {
+        self.significant(cycles, digits(band), f64::floor)
+    }
+
+    /// Cycles that come after an interval each, rounded down as that is.
+    pub fn promised_by(self, cycles: f64, interval: f64, band: &[f64; 3]) -> String {
+        let unit = 10f64.powi(place(interval, digits(band)).max(0));
+        self.whole((cycles / unit).floor() * unit)
     }
 
     /// A length, m, with its unit, to a share of a millimetre: `decimals` of it, two more of an inch.
@@ -131,6 +136,17 @@ impl Format {
         let factor = us.and_then(|us| us.factor(|_| m).ok()).unwrap_or(1.0);
         format!("{} {} at 1 {}", self.power(c * factor, digits), name_of("mm/cycle"), name_of("MPa√m"))
     }
+}
+
+/// A band of a median of 1 to both sides of which an error lies, in percent.
+pub fn within(percent: Option<f64>) -> [f64; 3] {
+    let half = percent.map_or(UNSTATED, |percent| percent / 100.0);
+    [1.0 - half, 1.0, 1.0 + half]
+}
+
+/// Power of ten of the last of so many digits.
+fn place(value: f64, digits: usize) -> i32 {
+    (value.log10().floor() as i32).saturating_add(1 - digits as i32)
 }
 
 /// Significant digits that a band deserves: two of one that is wider than a tenth to each side, three, four of one within a hundredth.

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Map, Value};
 
 use super::answers::{Answers, Asked};
-use super::band::{Lives, Quality, band_words};
+use super::band::{Lives, Quality, band_words, known_within};
 use super::chart::{self, LARGE, Mark, Series};
 use super::checks::{Judgement, Message, Validity, messages};
 use super::curve::{self, RunTables};
@@ -249,12 +249,13 @@ impl Judged {
             format!("  Crack length   {}", length_words(case, prediction)),
             format!("  Ends by        {}", prediction.stop.meaning()),
         ]);
-        lines.extend(through_words(case, prediction).map(|words| format!("  Breakthrough   {words}")));
-        lines.extend(phase_words(prediction).map(|words| format!("  Initiation     {words}")));
+        lines.extend(through_words(case, prediction, &by_error).map(|words| format!("  Breakthrough   {words}")));
+        lines.extend(phase_words(prediction, &by_error).map(|words| format!("  Initiation     {words}")));
         lines.extend(spectrum::words(case, prediction).map(|words| format!("  Load history   {words}")));
         let of_fleet = record.fleet.as_ref().and_then(|fleet| fleet.inspections.as_ref()?.interval());
-        lines.extend(self.lives.words(of_fleet));
-        lines.extend(self.answers.words());
+        lines.extend(self.lives.words(of_fleet, record.error_estimate_percent));
+        let known = self.lives.inspection().map(|inspection| known_within(inspection, record.error_estimate_percent));
+        lines.extend(self.answers.words(known));
         lines.push(format!("  Validity       {}", record.verdict));
         lines.extend(self.quality.words());
         lines.push(format!("  Method         {}", method_words(case, prediction)));
@@ -293,17 +294,17 @@ pub fn room(case: &Case) -> Room {
 }
 
 /// Both parts of a life that begins before its cracks have formed.
-fn phase_words(prediction: &Prediction) -> Option<String> {
+fn phase_words(prediction: &Prediction, cycles_words: &dyn Fn(f64) -> String) -> Option<String> {
     let phase = prediction.phase_one?;
     let [x, y] = phase.at.map(|x| x / MM);
     let concentration = phase.concentration.map_or_else(String::new, |k| format!(", K_tg = {k:.2}"));
     let local = format!("local stress range {:.1} MPa at ({x:.2}, {y:.2}) mm{concentration}", phase.range / MPA);
     Some(match phase.cycles {
         Some(cycles) if cycles <= prediction.life_cycles() => {
-            let growth = PLAIN.whole(prediction.life_cycles() - cycles);
-            format!("{} cycles to initiation ({local}), {growth} cycles of growth", PLAIN.whole(cycles))
+            let growth = cycles_words(prediction.life_cycles() - cycles);
+            format!("{} to initiation ({local}), {growth} of growth", cycles_words(cycles))
         }
-        Some(cycles) => format!("{} cycles, more than stop.cycles_max ({local})", PLAIN.whole(cycles)),
+        Some(cycles) => format!("{}, more than stop.cycles_max ({local})", cycles_words(cycles)),
         None => format!("no initiation: below the endurance limit ({local})"),
     })
 }
@@ -329,14 +330,14 @@ fn length_words(case: &Case, prediction: &Prediction) -> String {
 }
 
 /// When a crack was through, and what the error of its K does to the life.
-fn through_words(case: &Case, prediction: &Prediction) -> Option<String> {
+fn through_words(case: &Case, prediction: &Prediction, cycles_words: &dyn Fn(f64) -> String) -> Option<String> {
     let found = PartThroughLife::of(case, &prediction.curve)?;
     let [shorter, longer] = found.life_factors.map(|factor| factor * prediction.life_cycles());
-    let longer = if longer.is_finite() { PLAIN.whole(longer) } else { "unlimited".to_owned() };
-    let when = if found.is_through { format!("after {} cycles", PLAIN.whole(found.cycles)) } else { "not reached".to_owned() };
+    let longer = if longer.is_finite() { cycles_words(longer) } else { "unlimited".to_owned() };
+    let when = if found.is_through { format!("after {}", cycles_words(found.cycles)) } else { "not reached".to_owned() };
     Some(format!(
-        "{when}; life {} to {longer} cycles for K ±{:.0} % of the part-through crack",
-        PLAIN.whole(shorter),
+        "{when}; life {} to {longer} for K ±{:.0} % of the part-through crack",
+        cycles_words(shorter).trim_end_matches(" cycles"),
         100.0 * STATED_ERROR
     ))
 }

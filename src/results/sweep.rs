@@ -225,6 +225,9 @@ impl SweepRecord {
     }
 }
 
+/// Before a quantile that is at least its figure.
+pub const ABOVE: &str = "above ";
+
 /// Quantiles of lives: null where the lives do not say them, and in words.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LifeQuantiles {
@@ -278,7 +281,7 @@ impl Lives {
             return (None, Some("unlimited".to_owned()));
         }
         let is_bound = self.sorted.iter().any(|(life, is_bound)| *is_bound && *life <= value);
-        if is_bound { (None, Some(format!("above {value:.0}"))) } else { (Some(value), Some(format!("{value:.0}"))) }
+        if is_bound { (None, Some(format!("{ABOVE}{value:.0}"))) } else { (Some(value), Some(format!("{value:.0}"))) }
     }
 
     pub fn figures(&self) -> LifeQuantiles {

@@ -9,8 +9,9 @@ use perilife_calibration::population::plate::Plate;
 use perilife_growth::case::{Case, LawSource, Lot};
 use perilife_growth::predict::{Prediction, Silent, predict};
 use perilife_results::answers::{Asked, InspectionsRecord};
-use perilife_results::band::{Lives, Quality, band_words};
+use perilife_results::band::{Lives, Quality, band_words, known_within};
 use perilife_results::checks::Judgement;
+use perilife_results::format::{PLAIN, within};
 use perilife_results::curve::{self, BAND_COLUMNS, Row, left_of_table};
 use perilife_results::record::RunRecord;
 use toml::Table;
@@ -95,7 +96,7 @@ fn quantiles_of_rows_rise_and_end_at_those_of_the_life() {
             );
         }
         assert!((life[1] / run.life_cycles() - 1.0).abs() < 0.15, "{life:?} {}", run.life_cycles());
-        assert!(lives.words(None)[0].contains("scatter assumed"), "{:?}", lives.words(None));
+        assert!(lives.words(None, None)[0].contains("scatter assumed"), "{:?}", lives.words(None, None));
     }
 }
 
@@ -105,7 +106,7 @@ fn another_lot_scatters_more() {
     let other = Case { lot: Lot::Other, ..case.clone() };
     let [[low, _, high], [lower, _, higher]] = [&case, &other].map(|case| lives(case).1.life().unwrap());
     assert!(lower < 0.8 * low && higher > 1.2 * high);
-    assert!(lives(&other).1.words(None)[0].contains("other lot"));
+    assert!(lives(&other).1.words(None, None)[0].contains("other lot"));
     assert_eq!(hand_case(PANEL, &["fatigue.lot=\"other\""]).lot, Lot::Other);
 }
 
@@ -183,7 +184,15 @@ fn an_inspection_interval_comes_from_the_five_percent_life() {
     let late = late.unwrap();
     assert!(late.rows.is_empty() && late.missed == 1.0 && late.warning(1e9).unwrap().contains("never inspected"), "{late:?}");
     assert_eq!(inspections.warning(1.0), None);
-    let words = lives.words(None).join("\n");
+    let words = lives.words(None, None).join("\n");
+    let known = known_within(lives.inspection().unwrap(), None);
+    let [every, at] = [
+        PLAIN.promised(inspections.interval_cycles, &known),
+        PLAIN.promised_by(rows[0].cycles, inspections.interval_cycles, &known),
+    ];
+    assert!(words.contains(&format!("Inspect every  {every} cycles")) && inspections.words(&known).contains(&format!("first at {at} cycles")));
+    // Rows are as far apart as the interval says, but for a step of its last digit.
+    assert_eq!(["19 400", "58 200"], [19_413.0, 58_241.0].map(|n| PLAIN.promised_by(n, 19_413.0, &within(Some(0.5)))));
     assert!(words.contains("Inspect every  ") && words.contains("(5 % remaining life / 4)"), "{words}");
     let record = RunRecord::of(&case, &run, &Judgement::default(), &lives, &Quality::default());
     assert!(record.inspection.unwrap().has_band && record.band.unwrap().lot == Lot::Same);

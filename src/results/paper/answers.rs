@@ -3,11 +3,11 @@
 use super::{CHART, Drawings, PRINT, figure, known, number, picture, quoted, recorded, table, terms, text, title};
 use crate::answers::{InspectionRow, InspectionsRecord, SensitivityRecord};
 use crate::axis::Axis;
-use crate::band::every_words;
+use crate::band::{OF_FLEET, every_words, known_within};
 use crate::chart::{COMPUTED, Frame, SECOND, Size};
 use crate::curve::RunTables;
-use crate::fleet::FleetRecord;
-use crate::format::chance;
+use crate::fleet::{FleetRecord, words_of};
+use crate::format::{chance, within};
 use crate::record::{OutsideRange, PartThroughEnds, RunRecord};
 use crate::spectrum::SpectrumRecord;
 use crate::sweep::LifeQuantiles;
@@ -22,7 +22,7 @@ pub fn sections(run: &RunRecord, drawings: &Drawings) -> String {
     let per_pass = run.spectrum.as_ref().map(|spectrum| spectrum.cycles_per_pass);
     let mut page = run.inspections.as_ref().map_or_else(String::new, |found| inspections(run, found));
     page += &run.fleet.as_ref().map_or_else(String::new, |found| fleet(found, per_pass, drawings));
-    page + &run.sensitivities.as_ref().map_or_else(String::new, |all| sensitivities(all, drawings))
+    page + &run.sensitivities.as_ref().map_or_else(String::new, |all| sensitivities(run, all, drawings))
 }
 
 /// A probability; below 1e-3 its bound alone, since no POD curve supports more.
@@ -31,8 +31,11 @@ fn probability(value: f64) -> String {
 }
 
 fn inspections(run: &RunRecord, found: &InspectionsRecord) -> String {
+    let error = run.error_estimate_percent;
+    let known = run.inspection.as_ref().map_or_else(|| within(error), |inspection| known_within(inspection, error));
     let row = |row: &InspectionRow| {
-        vec![PRINT.whole(row.cycles), PRINT.fixed(row.crack_length_mm, 2), probability(row.pod), probability(row.missed)]
+        let cycles = PRINT.promised_by(row.cycles, found.interval_cycles, &known);
+        vec![cycles, PRINT.fixed(row.crack_length_mm, 2), probability(row.pod), probability(row.missed)]
     };
     let more = match found.rows.len() {
         count if count > INSPECTIONS_MOST => {
@@ -52,11 +55,7 @@ fn inspections(run: &RunRecord, found: &InspectionsRecord) -> String {
 }
 
 pub(super) fn quantile_words(of: &LifeQuantiles) -> [String; 3] {
-    let words = |words: &Option<String>| {
-        let words = words.as_deref().unwrap_or("unknown");
-        words.parse::<f64>().map_or_else(|_| quoted(words), |value| PRINT.whole(value))
-    };
-    [words(&of.words.p05), words(&of.words.p50), words(&of.words.p95)]
+    words_of(of, PRINT).map(|words| quoted(&words))
 }
 
 fn quantiles(of: &LifeQuantiles) -> String {
@@ -89,7 +88,7 @@ fn fleet(fleet: &FleetRecord, per_pass: Option<f64>, drawings: &Drawings) -> Str
         if let (Some(first), Some(before), Some(every)) =
             (looks.first_inspection_cycles, looks.break_before_first_inspection, looks.interval_cycles)
         {
-            let (first, every) = (PRINT.whole(first), every_words(every, None, per_pass));
+            let (first, every) = (PRINT.promised(first, &OF_FLEET), every_words(every, &OF_FLEET, per_pass));
             rows.push(("First inspection", format!("after {first} cycles for all plates; {} plates fail before", count(before))));
             rows.push(("Inspection interval", format!("{every} (5 % remaining life / {})", PRINT.short(looks.factor))));
         }
@@ -104,9 +103,10 @@ fn fleet(fleet: &FleetRecord, per_pass: Option<f64>, drawings: &Drawings) -> Str
     format!("{title}{picture}{}{missed}", terms(&rows))
 }
 
-fn sensitivities(all: &[SensitivityRecord], drawings: &Drawings) -> String {
+fn sensitivities(run: &RunRecord, all: &[SensitivityRecord], drawings: &Drawings) -> String {
     let row = |row: &SensitivityRecord| {
-        let life = row.life_cycles.map_or_else(|| "unlimited".to_owned(), |life| PRINT.whole(life));
+        let by_error = |life: f64| PRINT.by_error(life, run.error_estimate_percent);
+        let life = row.life_cycles.map_or_else(|| "unlimited".to_owned(), by_error);
         let bound = if row.life_is_lower_bound { "≥ " } else { "" };
         let change = known(row.change_of_life_percent, |change| {
             format!("{}{} %", if change > 0.0 { "+" } else { "" }, PRINT.fixed(change, 1))
@@ -176,8 +176,10 @@ fn understood(run: &RunRecord, spectrum: &SpectrumRecord) -> Vec<(&'static str, 
 
 /// Retardation model with its constants; life in cycles and passes, and without retardation.
 fn counted(run: &RunRecord, spectrum: &SpectrumRecord) -> Vec<(&'static str, String)> {
-    let cycles =
-        |cycles: f64| format!("{} cycles, {} passes", PRINT.whole(cycles), PRINT.fixed(cycles / spectrum.cycles_per_pass, 2));
+    let cycles = |cycles: f64| {
+        let passes = PRINT.significant(cycles / spectrum.cycles_per_pass, 4, f64::round);
+        format!("{} cycles, {passes} passes", PRINT.by_error(cycles, run.error_estimate_percent))
+    };
     let mut rows = vec![(
         "Retardation",
         match spectrum.retardation.get("model").and_then(|model| model.as_str()) {
@@ -216,7 +218,7 @@ pub fn of_part_through(run: &RunRecord, tables: &RunTables, drawings: &Drawings)
 
 fn rows(run: &RunRecord, found: &PartThroughEnds) -> Vec<(&'static str, String)> {
     let mm = |length: Option<f64>| known(length, |length| format!("{} mm", PRINT.fixed(length, 3)));
-    let cycles = |value: f64| format!("{} cycles", PRINT.whole(value));
+    let cycles = |value: f64| format!("{} cycles", PRINT.by_error(value, run.error_estimate_percent));
     let start = format!("a {}, c {}", mm(Some(found.crack_depth_initial_mm)), mm(run.crack_length_initial_mm));
     let (last, share) = (mm(Some(found.crack_depth_final_mm)), PRINT.fixed(found.depth_over_thickness, 3));
     let last = format!("a {last}, a/t = {share}");

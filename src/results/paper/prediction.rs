@@ -7,7 +7,7 @@ use super::{
     Drawings, PRINT, Signed, answers, cards, figure, hashes, known, letter, mark, prose, quoted, recorded, signatures, software,
     table, terms, text,
 };
-use crate::band::{every_words, interval_words};
+use crate::band::{OF_FLEET, every_words, interval_words};
 use crate::chart::Size;
 use crate::checks::{Check, Side, Validity, Verdict};
 use crate::curve::RunTables;
@@ -93,7 +93,8 @@ fn interval(run: &RunRecord) -> String {
     let per_pass = run.spectrum.as_ref().map(|spectrum| spectrum.cycles_per_pass);
     let looks = run.fleet.as_ref().and_then(|fleet| fleet.inspections.as_ref());
     let of_fleet = looks.and_then(FleetInspections::interval);
-    let every = of_fleet.map_or_else(|| interval_words(inspection, per_pass), |every| every_words(every, None, per_pass));
+    let of_run = || interval_words(inspection, per_pass, run.error_estimate_percent);
+    let every = of_fleet.map_or_else(of_run, |every| every_words(every, &OF_FLEET, per_pass));
     let rule = if inspection.has_band || of_fleet.is_some() { "5 % remaining life" } else { "remaining life" };
     let [from, factor] = [inspection.crack_length_mm, inspection.factor].map(|value| PRINT.short(value));
     let pod = run.inspections.as_ref().map_or_else(String::new, |found| {
@@ -152,13 +153,13 @@ fn life(run: &RunRecord) -> String {
     let cycles = |value: &str| format!("{value} <small>cycles</small>");
     if let Some(fleet) = &run.fleet {
         let [low, middle, high] = quantile_words(&fleet.life_cycles);
-        let (plates, run) = (PRINT.whole(fleet.plates as f64), PRINT.whole(life));
+        let (plates, run) = (PRINT.whole(fleet.plates as f64), PRINT.by_error(life, run.error_estimate_percent));
         let below = format!("median {middle}, 95 % {high} cycles, {plates} plates; nominal inputs: {run}");
         return card("Fleet life, 5 % of plates", &cycles(&low), &below);
     }
     if let Some(band) = &run.band {
         let [low, middle, high] = band.cycles().map(|value| PRINT.by_band(value, &band.cycles()));
-        let below = format!("90 % band: {low} to {high} cycles; fitted law alone: {}", PRINT.whole(life));
+        let below = format!("90 % band: {low} to {high} cycles; fitted law alone: {}", PRINT.by_band(life, &band.cycles()));
         return card(&format!("{title}, median"), &cycles(&middle), &below);
     }
     let below = match &run.no_band {
