@@ -2,7 +2,7 @@
 //!
 //! What is rounded is the number in the unit that is shown; a rounded number is never converted.
 //!
-//! Results in US units, and back: numbers by the units that their keys end in, quantities in words. What the program reads back as input
+//! Results in US units, and back: numbers by the units that their keys end in; words of a file are metric and converted where they are shown. What the program reads back as input
 //! stays metric: `fitted.toml`, `case.toml` and `inputs/`, checkpoints; so do `case` in results, files for ParaView and Parquet.
 
 use std::borrow::Cow;
@@ -10,10 +10,9 @@ use std::borrow::Cow;
 use serde_json::{Map, Value};
 
 use perilife_base::units::MM;
-use perilife_base::units::shown::{name_of, per, shown};
+use perilife_base::units::shown::{name_of, per, shown, told};
 pub use perilife_base::units::us::clean;
 use perilife_base::units::us::{System, renamed};
-use perilife_base::units::words::with_keys;
 
 /// Half widths of a band above which a life has so many significant digits, and those below.
 const DIGITS: [(f64, usize); 2] = [(0.1, 2), (0.01, 3)];
@@ -72,6 +71,11 @@ impl Format {
         let place = place(value, digits);
         let unit = 10f64.powi(place);
         self.digits(&format!("{:.*}", usize::try_from(-place).unwrap_or(0), to_whole(value / unit) * unit))
+    }
+
+    /// With four significant digits, without zeros at its end.
+    pub fn four(self, value: f64) -> String {
+        trimmed(&self.significant(value, 4, f64::round)).to_owned()
     }
 
     pub fn by_band(self, cycles: f64, band: &[f64; 3]) -> String {
@@ -187,23 +191,23 @@ const KEPT: [&str; 15] = [
 const ERRORS: &str = "standard_errors";
 const CONSTANTS: &str = "constants";
 
-/// A result in the units of `to`: numbers by their keys, and quantities in words.
-pub fn of_result(value: &Value, to: System) -> Value {
+/// A result in the units of `to`: numbers by their keys, and words by `told`.
+fn of_result(value: &Value, to: System, told: fn(&str) -> String) -> Value {
     match value {
-        Value::Object(fields) => of_fields(fields, fields, to),
-        Value::Array(items) => items.iter().map(|item| of_result(item, to)).collect(),
-        Value::String(words) => with_keys(words, to).into(),
+        Value::Object(fields) => of_fields(fields, fields, to, told),
+        Value::Array(items) => items.iter().map(|item| of_result(item, to, told)).collect(),
+        Value::String(words) => told(words).into(),
         other => other.clone(),
     }
 }
 
-/// A result that was written in either units, in metric ones.
+/// A result that was written in either units, in metric ones; its words are metric.
 pub fn metric_result(value: Value) -> Value {
     let is_us = value.as_object().is_some_and(|fields| fields.keys().any(|key| renamed(key, System::Si).is_some()));
-    if is_us { of_result(&value, System::Si) } else { value }
+    if is_us { of_result(&value, System::Si, str::to_owned) } else { value }
 }
 
-fn of_fields(fields: &Map<String, Value>, beside: &Map<String, Value>, to: System) -> Value {
+fn of_fields(fields: &Map<String, Value>, beside: &Map<String, Value>, to: System, told: fn(&str) -> String) -> Value {
     let field = |(key, value): (&String, &Value)| {
         if KEPT.contains(&key.as_str()) {
             return (key.clone(), value.clone());
@@ -211,9 +215,9 @@ fn of_fields(fields: &Map<String, Value>, beside: &Map<String, Value>, to: Syste
         if let (ERRORS, Some(errors), Some(constants)) =
             (key.as_str(), value.as_object(), fields.get(CONSTANTS).and_then(Value::as_object))
         {
-            return (key.clone(), of_fields(errors, constants, to));
+            return (key.clone(), of_fields(errors, constants, to, told));
         }
-        let Some(new) = renamed(key, to) else { return (key.clone(), of_result(value, to)) };
+        let Some(new) = renamed(key, to) else { return (key.clone(), of_result(value, to, told)) };
         match new.factor(|name| beside.get(name).and_then(Value::as_f64)) {
             Ok(factor) => (new.name, scaled(value, factor)),
             // Not known, or of an exponent that is not: as it is.
@@ -232,8 +236,14 @@ fn scaled(value: &Value, factor: f64) -> Value {
     }
 }
 
+/// A result as it is printed, in the units that are shown.
 pub fn shown_result(value: &Value) -> Cow<'_, Value> {
-    if shown() == System::Si { Cow::Borrowed(value) } else { Cow::Owned(of_result(value, shown())) }
+    if shown() == System::Si { Cow::Borrowed(value) } else { Cow::Owned(of_result(value, shown(), told)) }
+}
+
+/// A result as it is written: numbers in the units that are shown, words metric, so that a report in either units rounds once.
+pub fn written_result(value: &Value) -> Value {
+    of_result(value, shown(), str::to_owned)
 }
 
 /// Now, RFC 3339 in UTC to the second: `2026-11-25T19:01:55Z`.

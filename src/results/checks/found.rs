@@ -108,12 +108,12 @@ pub(super) fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Opti
     let percent = 100.0 * zone.life_share_too_large;
     // A short crack at a hole outgrows its zone, and has another too large one at its end.
     let (is_first, never) = (zone.too_large_from == Some(zone.first.crack_length), zone.life_share_too_large >= 1.0);
-    let found = match zone.too_large_from.map(two_digits) {
+    let found = match zone.too_large_from.map(one_decimal) {
         None => "valid to the end".to_owned(),
         Some(from) if never => format!("not valid from the start (a = {from})"),
         Some(from) => {
             let again = if is_first { " and again at the end" } else { "" };
-            let until = zone.too_large_to.map_or_else(|| again.to_owned(), |to| format!(" to {}", two_digits(to)));
+            let until = zone.too_large_to.map_or_else(|| again.to_owned(), |to| format!(" to {}", one_decimal(to)));
             let valid = if percent > CAUTION_PERCENT { "not valid" } else { "valid except" };
             format!("{valid} from a = {from}{until} ({percent:.1} % of life; limit {CAUTION_PERCENT} %)")
         }
@@ -128,8 +128,8 @@ pub(super) fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Opti
     Some(check.failed_if(never))
 }
 
-fn two_digits(length: f64) -> String {
-    PLAIN.length(length, usize::from(length < 10.0 * MM))
+fn one_decimal(length: f64) -> String {
+    PLAIN.length(length, 1)
 }
 
 /// Life outside the tested ΔK, below and above.
@@ -197,7 +197,7 @@ fn cross_check(case: &Case, prediction: &Prediction) -> Option<Check> {
         LawSource::Inline(law) => law.p,
         LawSource::Factor(_) | LawSource::Missing(_) => EXPONENT_USUAL,
     };
-    let (difference, at) = (100.0 * check.difference, two_digits(check.crack_length));
+    let (difference, at) = (100.0 * check.difference, one_decimal(check.crack_length));
     let percent = 100.0 * exponent * check.difference;
     let words = format!("K: {difference:+.1} % against the energy release rate at a = {at} ({percent:+.0} % in da/dN)");
     // A K that is too large makes lives too short.

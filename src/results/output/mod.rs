@@ -31,7 +31,7 @@ pub fn write_table(folder: &Path, table: &Table) -> Result<()> {
 
 /// Writes a result into a folder in the making, in the units that are shown.
 pub fn write_json(folder: &Path, name: &str, result: &impl Serialize) -> Result<()> {
-    write_file(&folder.join(name), format!("{:#}\n", super::format::shown_result(&serde_json::json!(result))).as_bytes())
+    write_file(&folder.join(name), format!("{:#}\n", super::format::written_result(&serde_json::json!(result))).as_bytes())
 }
 
 fn said(error: Error, more: &str) -> Error {

@@ -11,6 +11,7 @@ use crate::format::{chance, within};
 use crate::record::{OutsideRange, PartThroughEnds, RunRecord};
 use crate::spectrum::SpectrumRecord;
 use crate::sweep::LifeQuantiles;
+use perilife_base::units::MM;
 use perilife_growth::predict::StopReason;
 use perilife_plate::specimen::Point;
 use perilife_plate::specimen::part_through::SOURCE;
@@ -35,7 +36,8 @@ fn inspections(run: &RunRecord, found: &InspectionsRecord) -> String {
     let known = run.inspection.as_ref().map_or_else(|| within(error), |inspection| known_within(inspection, error));
     let row = |row: &InspectionRow| {
         let cycles = PRINT.promised_by(row.cycles, found.interval_cycles, &known);
-        vec![cycles, PRINT.fixed(row.crack_length_mm, 2), probability(row.pod), probability(row.missed)]
+        let length = PRINT.length(row.crack_length_mm * MM, 2);
+        vec![cycles, length, probability(row.pod), probability(row.missed)]
     };
     let more = match found.rows.len() {
         count if count > INSPECTIONS_MOST => {
@@ -45,7 +47,7 @@ fn inspections(run: &RunRecord, found: &InspectionsRecord) -> String {
     };
     let has_band = run.inspection.as_ref().is_some_and(|inspection| inspection.has_band);
     let cycles = if has_band { "Cycles (5 % plate)" } else { "Cycles" };
-    let head = [cycles, "Crack length, mm", "POD", "Cumulative miss probability"].map(text);
+    let head = [cycles, "Crack length", "POD", "Cumulative miss probability"].map(text);
     let table = table("", &head, found.rows.iter().take(INSPECTIONS_MOST).map(row));
     format!(
         "{}<p>Probability that all inspections miss: {} (independence of inspections assumed).</p>\n{table}{more}",

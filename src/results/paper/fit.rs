@@ -63,7 +63,9 @@ fn answer(fit: &LivesRecord) -> String {
     let c = PRINT.level(fit.paris_c_mm_per_cycle, Some(fit.paris_m), 4);
     let at = format!("Crack growth rate at ΔK = {} MPa√m", PRINT.fixed(fit.pivot_delta_k_mpa_sqrt_m, 2));
     let of_rate = (&*at, rate, format!("± {error} % (one standard error)"));
-    let of_m = ("Exponent m", PRINT.fixed(fit.paris_m, 3), format!("± {}; C = {c}", PRINT.fixed(fit.paris_m_error, 3)));
+    let m = PRINT.with_error(fit.paris_m, Some(fit.paris_m_error));
+    let (m, error) = m.split_once(" ± ").unwrap_or((&m, "0"));
+    let of_m = ("Exponent m", m.to_owned(), format!("± {error}; C = {c}"));
     cards("fit", [of_rate, of_m, valid([fit.delta_k_min_mpa_sqrt_m, fit.delta_k_max_mpa_sqrt_m], &ratio)])
 }
 
@@ -94,12 +96,13 @@ fn details(fit: &LivesRecord, plate: Option<&Plate>, signed: &Signed) -> String 
     let number = |key: &str, unit: &str| {
         test[key].as_f64().map_or_else(|| recorded(None), |value| format!("{} {unit}", PRINT.short(value)))
     };
+    let yields = known(test["yield_strength_mpa"].as_f64(), |strength| format!("{} MPa (material file)", PRINT.four(strength)));
     let specimen = [
         ("Type", text("specimen_kind").replace('_', " ")),
         ("Material", text("material")),
         ("Width W", number("width_mm", "mm")),
         ("Thickness B", number("thickness_mm", "mm")),
-        ("Yield strength", number("yield_strength_mpa", "MPa (material file)")),
+        ("Yield strength", yields),
         ("Initial crack size", number("first_reading_mm", "mm")),
         ("Final crack size", number("last_reading_mm", "mm")),
         ("Specimens", test["specimens"].as_f64().map_or_else(|| recorded(None), |value| PRINT.whole(value))),

@@ -15,6 +15,7 @@ use crate::fleet::FleetInspections;
 use crate::pictures::curves::{a_n_svg, end_words, k_svg};
 use crate::pictures::plate::{Plate, plate_svg};
 use crate::record::RunRecord;
+use perilife_base::units::MM;
 use perilife_growth::predict::StopReason;
 
 /// Largest number of files with printed hashes.
@@ -124,10 +125,15 @@ fn interval(run: &RunRecord) -> String {
     )
 }
 
+/// A crack length, mm, with its unit.
+fn length(millimetres: f64) -> String {
+    PRINT.length(millimetres * MM, 2)
+}
+
 fn end_length(run: &RunRecord, tables: &RunTables) -> String {
     match (run.leading_crack(), tables.rows.last()) {
-        (Some((tip, [_, last])), _) => format!("governing crack (tip {tip}): {} mm", PRINT.fixed(last, 1)),
-        (None, Some(row)) => format!("crack length {} mm", PRINT.fixed(row.crack_length_mm, 1)),
+        (Some((tip, [_, last])), _) => format!("governing crack (tip {tip}): {}", length(last)),
+        (None, Some(row)) => format!("crack length {}", length(row.crack_length_mm)),
         (None, None) => String::new(),
     }
 }
@@ -195,15 +201,11 @@ fn figures(run: &RunRecord, tables: &RunTables, plate: Option<&Plate>) -> String
 }
 
 fn understood(run: &RunRecord, plate: Option<&Plate>) -> Vec<(&'static str, String)> {
-    let two_decimals = |length: f64| PRINT.short((100.0 * length).round() / 100.0);
     let lengths = match run.leading_crack() {
-        Some((tip, [first, last])) => {
-            format!("{} mm to {} mm (governing crack, tip {tip})", two_decimals(first), two_decimals(last))
-        }
+        Some((tip, [first, last])) => format!("{} to {} (governing crack, tip {tip})", length(first), length(last)),
         None => {
-            let [first, last] =
-                [run.crack_length_initial_mm, run.crack_length_final_mm].map(|length| known(length, two_decimals));
-            format!("{first} mm to {last} mm")
+            let [first, last] = [run.crack_length_initial_mm, run.crack_length_final_mm].map(|one| known(one, length));
+            format!("{first} to {last}")
         }
     };
     let mut rows = vec![

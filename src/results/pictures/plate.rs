@@ -10,6 +10,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::format::PLAIN;
 use crate::model_words::{clean, loading, short};
 use perilife_base::units::{GPA, MM, MPA, MPA_SQRT_M};
 use perilife_growth::case::Case;
@@ -104,9 +105,9 @@ fn specimen_words(case: &Case) -> String {
 fn material_words(case: &Case) -> String {
     let material = &case.material;
     // Strengths that a fit does not use are not there.
-    let yields = material.yield_strength.map_or(String::new(), |strength| format!(", σ_Y {} MPa", short(strength / MPA)));
-    let tough = material.toughness.map_or(String::new(), |k| format!(", K_c {} MPa√m", short(k / MPA_SQRT_M)));
-    let modulus = short(material.youngs_modulus / GPA);
+    let yields = material.yield_strength.map_or(String::new(), |strength| format!(", σ_Y {} MPa", PLAIN.four(strength / MPA)));
+    let tough = material.toughness.map_or(String::new(), |k| format!(", K_c {} MPa√m", PLAIN.four(k / MPA_SQRT_M)));
+    let modulus = PLAIN.four(material.youngs_modulus / GPA);
     let (name, ratio) = (&material.name, short(material.poisson_ratio));
     // Of a file its stem: where it lay is no part of what it says.
     let stem = Path::new(name).file_stem().filter(|_| name.ends_with(".toml")).map(|stem| stem.to_string_lossy());
