@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use super::axis::{Axis, Box2, place_labels};
+use super::axis::{Axis, Box2, along, place_labels};
 use super::output::write_file;
 use super::specimen_picture::sketch::Sketch;
 use perilife_base::error::Result;
 use perilife_plate::specimen::Point;
+use perilife_plate::specimen::geometry::distance;
 
 pub const COMPUTED: &str = "#0b5fa5";
 pub const SECOND: &str = "#a8480a";
@@ -20,6 +21,8 @@ const GRID: &str = "#e3e7ec";
 /// Width of a broad line, px, and its cover.
 const BROAD: f64 = 7.0;
 const FAINT: &str = "66";
+/// Distance up to which a curve passes the end that is named, px.
+const SHARED: f64 = 12.0;
 /// Colours of several series, which differ in lightness too.
 pub const COLOURS: [&str; 6] = [COMPUTED, SECOND, "#1b8a6b", "#8a4fa3", NOTE, "#4fa3d1"];
 /// Size of a chart in a file of its own, px, and of its numbers.
@@ -321,7 +324,18 @@ impl Frame {
         let line: Vec<Point> = curves.iter().flat_map(|curve| self.pixels(curve).into_iter().chain([[f64::NAN; 2]])).collect();
         let sizes: Vec<Point> = named.iter().map(|(words, ..)| [width_of(words, text), 1.1 * text]).collect();
         let all: Vec<usize> = (0..named.len()).collect();
-        for (place, (words, _, colour)) in place_labels(room, &ends, &line, &all, &sizes).into_iter().zip(named) {
+        // A name that is nearer to another curve than to the end of its own would be read as that of the other.
+        let reach = |place: &Box2, curve: &[Point]| {
+            let parts = curve.windows(2).flat_map(|ends| along(ends[0], ends[1]));
+            parts.map(|at| distance(place.nearest(at), at)).fold(f64::INFINITY, f64::min)
+        };
+        let curves: Vec<Vec<Point>> = curves.iter().map(|curve| self.pixels(curve)).collect();
+        for ((place, end), (words, _, colour)) in place_labels(room, &ends, &line, &all, &sizes).into_iter().zip(&ends).zip(named) {
+            let own = distance(place.nearest(*end), *end);
+            let is_other = |curve: &&Vec<Point>| curve.iter().all(|at| distance(*at, *end) > SHARED);
+            if curves.iter().filter(is_other).any(|curve| reach(&place, curve) < own) {
+                continue;
+            }
             self.sketch.name([place.low[0], place.centre()[1] + 0.35 * text], words, "start", text, colour);
         }
     }

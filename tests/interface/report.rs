@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use perilife_results::band::OF_FLEET;
+use perilife_results::format::{PLAIN, PRINT};
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
@@ -208,14 +210,9 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
         assert_alone(&page);
         (page, json(dir.path().join("run/result.json")))
     };
-    let assert_says = |page: &str, all: &[&str]| all.iter().for_each(|words| assert!(page.contains(words), "{words}"));
-    // Thousands apart, as the report writes them.
-    let grouped = |cycles: f64| {
-        let digits = format!("{cycles:.0}");
-        let place = |i: usize| i > 0 && digits.len() > 4 && (digits.len() - i).is_multiple_of(3);
-        let text: String =
-            digits.char_indices().flat_map(|(i, c)| place(i).then_some('\u{202f}').into_iter().chain([c])).collect();
-        format!("{text} cycles")
+    // Cycles as the report writes them, by the stated error of the life.
+    let by_error = |cycles: f64, result: &Value| {
+        format!("{} cycles", PRINT.by_error(cycles, result["error_estimate_percent"].as_f64()))
     };
 
     let (page, result) = run("spectrum_panel.toml", "--set loading.omission_percent=20 --set loading.truncation_percent=95");
@@ -234,7 +231,7 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
         none (all above 20 % of the largest range) | peaks above 95 % of the largest in the file | wheeler | \
         wheeler_exponent | 104.5 MPa, gross",
     );
-    assert_says(&page, &[&grouped(life), &grouped(mean)]);
+    assert_says(&page, &[life, mean].map(|life| by_error(life, &result)));
 
     let (page, result) = run("corner_crack_at_hole.toml", "--set stop.at_break_through=true");
     let found = &result["part_through"];
@@ -246,9 +243,9 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
     assert_says(
         &page,
         &[
-            &grouped(found["cycles_at_break_through"].as_f64().unwrap()),
-            &grouped(found["life_cycles_if_k_is_larger"].as_f64().unwrap()),
-            &grouped(found["life_cycles_if_k_is_smaller"].as_f64().unwrap()),
+            by_error(found["cycles_at_break_through"].as_f64().unwrap(), &result),
+            by_error(found["life_cycles_if_k_is_larger"].as_f64().unwrap(), &result),
+            by_error(found["life_cycles_if_k_is_smaller"].as_f64().unwrap(), &result),
         ],
     );
 
@@ -262,10 +259,17 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
     assert_says(
         &page,
         &[
-            &grouped(looks["detectable_to_critical_cycles"]["p95"].as_f64().unwrap()),
-            &grouped(looks["interval_cycles"].as_f64().unwrap().floor()).replace('\u{202f}', " "),
+            PRINT.by_band(looks["detectable_to_critical_cycles"]["p95"].as_f64().unwrap(), &OF_FLEET),
+            PLAIN.promised(looks["interval_cycles"].as_f64().unwrap(), &OF_FLEET),
         ],
     );
+    let (page, _) = run("two_cracks_plate.toml", "--residual-strength");
+    assert_says(
+        &page,
+        &["Crack extension of each tip against cycles", "<h1 class=\"sheet\">Residual strength</h1>", "Load that the cracked plate can carry"],
+    );
+    assert!(page.contains("circles at 25, 50, 75 and 90 % of life") && !page.contains(">25 %<"), "words at one crack alone");
+    run("fleet_of_panels.toml", "--inspect-from 10 --pod 12,25");
     // A picture that does more than draw is not taken over.
     let picture = dir.path().join("run/fleet.svg");
     let text = fs::read_to_string(&picture).unwrap();

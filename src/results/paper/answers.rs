@@ -21,7 +21,10 @@ const INSPECTIONS_MOST: usize = 20;
 /// Their sections; empty for a run without them.
 pub fn sections(run: &RunRecord, drawings: &Drawings) -> String {
     let per_pass = run.spectrum.as_ref().map(|spectrum| spectrum.cycles_per_pass);
-    let mut page = run.inspections.as_ref().map_or_else(String::new, |found| inspections(run, found));
+    let caption = "Load that the cracked plate can carry against crack length, by fracture and by net-section yield.";
+    let strength = picture(drawings, "residual_strength.svg", caption);
+    let mut page = if strength.is_empty() { strength } else { title("Residual strength") + &strength };
+    page += &run.inspections.as_ref().map_or_else(String::new, |found| inspections(run, found));
     page += &run.fleet.as_ref().map_or_else(String::new, |found| fleet(found, per_pass, drawings));
     page + &run.sensitivities.as_ref().map_or_else(String::new, |all| sensitivities(run, all, drawings))
 }

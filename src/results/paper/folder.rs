@@ -140,7 +140,7 @@ impl Files<'_> {
     }
 }
 
-const NAMES: [&str; 4] = ["spectrum.svg", "section.svg", "fleet.svg", "sensitivities.svg"];
+const NAMES: [&str; 5] = ["spectrum.svg", "section.svg", "residual_strength.svg", "fleet.svg", "sensitivities.svg"];
 const ELEMENTS: [&str; 10] = ["svg", "g", "rect", "path", "line", "circle", "polygon", "polyline", "text", "tspan"];
 
 #[derive(Debug, Default)]

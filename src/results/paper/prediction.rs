@@ -12,7 +12,7 @@ use crate::chart::Size;
 use crate::checks::{Check, Side, Validity, Verdict};
 use crate::curve::RunTables;
 use crate::fleet::FleetInspections;
-use crate::pictures::curves::{a_n_svg, end_words, k_svg};
+use crate::pictures::curves::{a_n_svg, end_words, k_svg, length_name};
 use crate::pictures::plate::{Plate, plate_svg};
 use crate::record::RunRecord;
 use perilife_base::units::MM;
@@ -180,7 +180,7 @@ fn figures(run: &RunRecord, tables: &RunTables, plate: Option<&Plate>) -> String
     let mut figures = match plate {
         Some(plate) => figure(
             &plate_svg(plate, tables, PLATE),
-            "Plate, load, initial crack (black) and crack path, colored by cycles; marks at 25, 50, 75 and 90 % of life.",
+            "Plate, load, initial crack (black) and crack path, colored by cycles; circles at 25, 50, 75 and 90 % of life.",
             "tall",
         ),
         None => format!("<p class=\"tall\">Plate: {}</p>", recorded(None)),
@@ -188,12 +188,12 @@ fn figures(run: &RunRecord, tables: &RunTables, plate: Option<&Plate>) -> String
     if tables.rows.len() < 2 {
         return format!("<div class=\"figs run\">\n{figures}<p>No crack grew.</p></div>\n");
     }
-    figures += &figure(&a_n_svg(run, tables, CHART), &format!("Crack length against cycles{band}."), "");
+    let over = length_name(run, tables);
+    figures += &figure(&a_n_svg(run, tables, CHART), &format!("{over} against cycles{band}."), "");
     figures += &match k_svg(run, tables, CHART) {
         Some(svg) => {
             let hatched = if run.law.range().is_some() { " (hatched where outside the tested ΔK)" } else { "" };
-            let over = if run.leading_crack().is_some() { "crack extension of each tip" } else { "crack length" };
-            figure(&svg, &format!("K at maximum load against {over}{hatched}."), "")
+            figure(&svg, &format!("K at maximum load against {}{hatched}.", over.to_lowercase()), "")
         }
         None => format!("<p>K against crack length: {} (growth driven by bond failure).</p>", recorded(None)),
     };

@@ -44,6 +44,11 @@ pub fn end_words(reason: StopReason) -> [&'static str; 2] {
     }
 }
 
+/// What curves are drawn over, in words.
+pub fn length_name(run: &RunRecord, tables: &RunTables) -> &'static str {
+    if by_tip(run, tables) { "Crack extension of each tip" } else { "Crack length" }
+}
+
 /// Whether lengths are drawn by tip: the sum over several cracks is the length of none.
 fn by_tip(run: &RunRecord, tables: &RunTables) -> bool {
     tables.tips.len() > 1 && run.tips.iter().any(|tip| tip.crack.is_some())
@@ -120,7 +125,7 @@ fn spans(points: &[Point]) -> Point {
 /// Crack length against cycles: scatter band if any, curve, and a cross at the end with the reason.
 pub fn a_n_svg(run: &RunRecord, tables: &RunTables, size: Size) -> String {
     let [_, sentence] = end_words(run.stop_reason);
-    let name = if by_tip(run, tables) { "Crack extension of each tip" } else { "Crack length" };
+    let name = length_name(run, tables);
     a_n(run, tables, size).finish(&format!("{name} in mm against cycles to {:.0}; end of analysis: {sentence}", tables.life()))
 }
 

@@ -1,7 +1,8 @@
 //! `plate.svg`: the plate to scale with its loads, the first crack and the way of every tip, coloured by cycles.
 
 use super::{LoadDrawn, Plate};
-use crate::chart::{COMPUTED, INK, Size};
+use crate::axis::{Box2, place_labels};
+use crate::chart::{COMPUTED, INK, Size, width_of};
 use crate::curve::RunTables;
 use crate::pictures::curves::a_n_moving;
 use crate::record::RunRecord;
@@ -217,14 +218,42 @@ impl<'a> Drawing<'a> {
             }
         });
         let mut taken = Vec::new();
-        // Shares of the life stand beside the longest way, which is that of the crack that ends it but for equals.
+        // Shares of the life stand beside the longest way of one crack; beside those of several cracks they would cover others.
         let longest = self.ways.iter().map(Way::whole).fold(0.0, f64::max);
-        let named = self.ways.iter().position(|way| way.whole() >= longest && longest > 0.0);
+        let named = self.ways.iter().position(|way| way.whole() >= longest && longest > 0.0 && self.ways.len() <= 2);
         for (number, way) in self.ways.iter().enumerate() {
             if is_large && way.whole() > 0.0 {
                 self.marks(sketch, way, named == Some(number), &mut taken);
             }
-            sketch.group(&format!(r#"class="tip" data-tip="{number}""#), |sketch| self.tip(sketch, way, number, is_large));
+            let end = sketch.place(way.at(way.whole()));
+            sketch.group(&format!(r#"class="tip" data-tip="{number}""#), |sketch| {
+                sketch.ring(end, if is_large { 4.5 } else { 3.0 }, INK, 1.8);
+            });
+        }
+        if is_large && self.ways.len() > 1 {
+            self.names(sketch, &taken);
+        }
+    }
+
+    /// Numbers of the tips, off cracks, ways, marks and their words.
+    fn names(&self, sketch: &mut Sketch, taken: &[Point]) {
+        let ends: Vec<Point> = self.ways.iter().map(|way| sketch.place(way.at(way.whole()))).collect();
+        let pixels = |places: &[Point]| places.iter().map(|at| sketch.place(*at)).chain([[f64::NAN; 2]]).collect::<Vec<_>>();
+        let drawn = self.ways.iter().map(|way| &way.places[..]).chain(self.plate.cracks_mm.iter().map(|ends| &ends[..]));
+        let words = taken.iter().flat_map(|[x, y]| [-1.4, 0.0, 1.4].map(|side| [x + side * self.text, *y]).into_iter().chain([[f64::NAN; 2]]));
+        let mut line: Vec<Point> = drawn.flat_map(pixels).chain(words).collect();
+        for (way, share) in self.ways.iter().flat_map(|way| MARKS.map(|share| (way, share))) {
+            if let Some(length) = way.length_at(share / 100.0 * self.life) {
+                let [x, y] = sketch.place(way.at(length));
+                line.extend([[x, y - 4.0], [x, y + 4.0], [f64::NAN; 2]]);
+            }
+        }
+        let numbers: Vec<String> = (0..ends.len()).map(|number| number.to_string()).collect();
+        let sizes: Vec<Point> = numbers.iter().map(|words| [width_of(words, self.text), self.text]).collect();
+        let frame = Box2 { low: [f64::NEG_INFINITY; 2], high: [f64::INFINITY; 2] };
+        let all: Vec<usize> = (0..ends.len()).collect();
+        for (place, words) in place_labels(frame, &ends, &line, &all, &sizes).iter().zip(&numbers) {
+            sketch.name([place.centre()[0], place.centre()[1] + 0.35 * self.text], words, "middle", self.text, INK);
         }
     }
 
@@ -235,17 +264,6 @@ impl<'a> Drawing<'a> {
             let ends = [step as f64, step as f64 + 1.08].map(|part| way.whole() * (part / steps).min(1.0));
             let color = colour(way.cycles.at(0.5 * (ends[0] + ends[1])) / self.life);
             sketch.step(ends.map(|end| sketch.place(way.at(end))), &color, way.cycles.at(ends[1]));
-        }
-    }
-
-    fn tip(&self, sketch: &mut Sketch, way: &Way, number: usize, is_large: bool) {
-        let end = sketch.place(way.at(way.whole()));
-        sketch.ring(end, if is_large { 4.5 } else { 3.0 }, INK, 1.8);
-        if is_large && self.ways.len() > 1 {
-            let [x, y] = [0, 1].map(|i| way.at(way.whole())[i] - way.at(0.0)[i]);
-            let size = x.hypot(y).max(1e-12);
-            let place = [end[0] + 16.0 * x / size, end[1] - 16.0 * y / size + 0.35 * self.text];
-            sketch.name(place, &number.to_string(), "middle", self.text, INK);
         }
     }
 
