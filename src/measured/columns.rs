@@ -357,8 +357,12 @@ fn not_read(table: &Table, columns: &[Column]) -> Option<String> {
     });
     let names: Vec<&str> = strange.map(|column| table.header[column.index].as_str()).filter(|name| !name.is_empty()).collect();
     let (file, ignored) = (table.file.display(), names.join(", "));
-    let remedy = "if one is the load of every reading, set measured.columns = { force_max = \"...\" } (--column force_max=...)";
-    (!names.is_empty()).then(|| format!("columns: {file}: ignored columns: {ignored}; {remedy}"))
+    let is_load = |column: &Column| matches!(column.role, Role::Max | Role::Range);
+    let remedy = match columns.iter().any(is_load) {
+        true => "",
+        false => "; if one is the load of every reading, set measured.columns = { force_max = \"...\" } (--column force_max=...)",
+    };
+    (!names.is_empty()).then(|| format!("columns: {file}: ignored columns: {ignored}{remedy}"))
 }
 
 fn says_the_same(table: &Table, column: usize, key: &str) -> Error {

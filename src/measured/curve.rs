@@ -72,8 +72,8 @@ pub struct Source {
     pub is_named_by_file: bool,
     /// Cycles of the file at the first reading of a window, which counts them from 0.
     pub cycles_before: f64,
-    /// Orientation and environment, as noted above its table.
-    pub noted: [Option<String>; 2],
+    /// Orientation, environment and waveform, as noted above its table.
+    pub noted: [Option<String>; 3],
 }
 
 /// Loads of the readings of a curve as a file has them.

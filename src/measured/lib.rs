@@ -34,6 +34,7 @@ pub use rates::{RangeKind, RateFile, RateFileKeys, RateRow, RateTable};
 use perilife_base::error::{Error, InputError, Result};
 use perilife_base::input::Opened;
 use readings::curves_of;
+pub use readings::said_above;
 
 /// Reads one or many files; `-` is standard input.
 pub fn read(files: &[PathBuf], import: &Import) -> Result<Measured> {
@@ -62,6 +63,8 @@ pub fn parse(bytes: &[u8], file: &Path, import: &Import) -> Result<Measured> {
 pub struct Survey {
     pub header: Vec<String>,
     pub first_rows: Vec<Vec<String>>,
+    /// Fields of the lines above the table.
+    pub above: Vec<Vec<String>>,
     pub layout: Option<Layout>,
     pub measured: Measured,
     /// What is wrong, row by row, up to [`PROBLEMS_MAX`].
@@ -83,6 +86,7 @@ pub fn survey(bytes: &[u8], file: &Path, import: &Import) -> Survey {
         let table = leave_out::table_of(bytes, file, import)?;
         survey.header.clone_from(&table.header);
         survey.first_rows = table.first_cells();
+        survey.above = readings::fields(&table);
         let layout = columns::recognise(&table, import)?;
         survey.measured = curves_of(&table, &layout, import.of_plate, &mut note)?;
         survey.layout = Some(layout);

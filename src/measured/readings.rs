@@ -54,28 +54,67 @@ pub(super) fn curves_of(table: &Table, layout: &Layout, of_plate: bool, fate: Fa
     Ok(measured)
 }
 
-/// Crack plane orientations after ASTM E1823; labels that their value needs no more; words that only an environment has.
+/// Crack plane orientations after ASTM E1823; labels of what is noted, the longer ones first; words that only an environment has.
 const ORIENTATIONS: [&str; 6] = ["L-T", "T-L", "L-S", "S-L", "S-T", "T-S"];
-const LABELS: [&str; 5] = ["test environment", "environment", "test temperature", "temperature", "atmosphere"];
-const ENVIRONMENTS: [&str; 9] = ["air", "vacuum", "humid", "humidity", "seawater", "salt", "room temperature", "°c", "deg c"];
+const OF_ORIENTATION: [&str; 4] = ["crack plane orientation", "orientation", "orientierung", "rissorientierung"];
+const OF_WAVEFORM: [&str; 6] = ["waveform", "wellenform", "test frequency", "frequency", "prüffrequenz", "frequenz"];
+const OF_ENVIRONMENT: [&str; 9] = [
+    "test environment", "environment", "test temperature", "temperature", "atmosphere", "umgebung", "prüftemperatur",
+    "temperatur", "medium",
+];
+const ENVIRONMENTS: [&str; 12] =
+    ["air", "vacuum", "humid", "humidity", "seawater", "salt", "room temperature", "°c", "deg c", "laborluft", "luft", "vakuum"];
 
-/// Orientation and environment of a test, as the lines above a table note them.
-fn noted(table: &Table) -> [Option<String>; 2] {
-    let lines = || table.preamble.iter().map(|(_, text)| text.as_str());
-    let is_written = |c: char| c.is_alphanumeric() || "-°%.".contains(c);
-    let mut words = lines().flat_map(|line| line.split(|c| !is_written(c)));
-    let part = |part: &str| {
-        let label = LABELS.iter().find(|label| part.get(..label.len()).is_some_and(|own| own.eq_ignore_ascii_case(label)));
-        let value = label.map_or(part, |label| part[label.len()..].trim_start_matches([' ', ':', '=']));
-        let own = format!(" {} ", part.to_lowercase().replace(|c| !is_written(c), " "));
-        let is_environment = label.is_some() || ENVIRONMENTS.iter().any(|name| own.contains(&format!(" {name} ")));
-        (is_environment && !value.is_empty()).then(|| value.to_owned())
+/// Fields of the lines above a table.
+pub(super) fn fields(table: &Table) -> Vec<Vec<String>> {
+    let trimmed = |part: &str| part.trim_matches(|c: char| c.is_whitespace() || "#%*\"".contains(c)).to_owned();
+    let parts = |line: &str| line.split(['|', ';', '\t']).flat_map(|part| part.split(", ")).map(trimmed).collect();
+    table.preamble.iter().map(|(_, line)| parts(line)).collect()
+}
+
+/// What a field says behind one of these labels, perhaps with its unit in brackets, and whether the value is the next field.
+fn labelled(line: &[String], place: usize, labels: &[&str]) -> Option<(String, bool)> {
+    let of = |label: &&str| Some((line[place].get(..label.len())?, line[place].get(label.len()..)?));
+    let is_label =
+        |own: &&str| of(own).is_some_and(|(a, b)| a.eq_ignore_ascii_case(own) && !b.starts_with(char::is_alphanumeric));
+    let rest = of(labels.iter().find(|own| is_label(own))?)?.1.trim_start();
+    let (unit, rest) = rest.strip_prefix(['(', '[']).and_then(|rest| rest.split_once([')', ']'])).unwrap_or(("", rest));
+    let own = rest.trim_start_matches([' ', ':', '=']);
+    let value = if own.is_empty() { line.get(place + 1)? } else { own };
+    let is_number = value.replace(',', ".").parse::<f64>().is_ok();
+    Some((if is_number { format!("{value} {unit}").trim_end().to_owned() } else { value.to_owned() }, own.is_empty()))
+}
+
+/// All that the lines above a table say behind one of these labels.
+pub fn said_above(lines: &[Vec<String>], labels: &[&str]) -> Vec<String> {
+    let of_line = |line: &Vec<String>| {
+        (0..line.len()).filter_map(|at| labelled(line, at, labels)).map(|(value, _)| value).collect::<Vec<_>>()
     };
-    let parts = lines().flat_map(|line| line.split(['|', ';', '\t']).flat_map(|part| part.split(", ")));
-    let found: Vec<String> =
-        parts.filter_map(|own| part(own.trim_matches(|c: char| c.is_whitespace() || "#%*\"".contains(c)))).collect();
-    let orientation = words.find(|word| ORIENTATIONS.contains(word)).map(str::to_owned);
-    [orientation, Some(found.join(", ")).filter(|words| !words.is_empty())]
+    lines.iter().flat_map(of_line).filter(|value| !value.is_empty()).collect()
+}
+
+/// Orientation, environment and waveform of a test, as the lines above a table note them.
+fn noted(table: &Table) -> [Option<String>; 3] {
+    let lines = fields(table);
+    let is_written = |c: char| c.is_alphanumeric() || "-°%.".contains(c);
+    let is_environment = |part: &str| {
+        let own = format!(" {} ", part.to_lowercase().replace(|c| !is_written(c), " "));
+        ENVIRONMENTS.iter().any(|name| own.contains(&format!(" {name} ")))
+    };
+    let of_label = said_above(&lines, &OF_ENVIRONMENT);
+    let unlabelled = |line: &&Vec<String>, at: usize| labelled(line, at, &OF_ENVIRONMENT).is_none() && is_environment(&line[at]);
+    let others =
+        lines.iter().flat_map(|line| (0..line.len()).filter(move |at| unlabelled(&line, *at)).map(move |at| line[at].clone()));
+    let others: Vec<String> = others.filter(|part| !of_label.contains(part)).collect();
+    // Without its hyphen an orientation needs its label.
+    let plain = |text: &str| text.replace('-', "").to_uppercase();
+    let said = said_above(&lines, &OF_ORIENTATION);
+    let said = said.iter().find_map(|value| ORIENTATIONS.iter().find(|one| plain(one) == plain(value)).copied());
+    let mut words = lines.iter().flatten().flat_map(|part| part.split(|c| !is_written(c)));
+    let orientation = said.or_else(|| words.find_map(|word| ORIENTATIONS.into_iter().find(|one| *one == word)));
+    let waveform = said_above(&lines, &OF_WAVEFORM).into_iter().filter(|value| value.parse::<f64>().is_err());
+    let joined = |all: Vec<String>| Some(all.join(", ")).filter(|words| !words.is_empty());
+    [orientation.map(str::to_owned), joined([of_label, others].concat()), joined(waveform.collect())]
 }
 
 /// Curves of a series, specimens in the order of their first rows.

@@ -187,6 +187,7 @@ pub struct TestRecord {
     /// As noted above the tables of readings; proposed for the report.
     pub orientation: Option<String>,
     pub environment: Option<String>,
+    pub waveform: Option<String>,
 }
 
 /// A criterion: requirement, result, whether it is met (`null`: not checked), remark.
@@ -208,7 +209,8 @@ pub fn test(calibration: &CalibrationCase) -> TestRecord {
         LoadMeasure::Force => ("kN", case.loading.maximum / KN),
     };
     let lengths = || calibration.read.iter().flat_map(|curve| curve.crack_length.iter().copied());
-    let [orientation, environment] = [0, 1].map(|i| calibration.read.iter().find_map(|curve| curve.source.noted[i].clone()));
+    let [orientation, environment, waveform] =
+        [0, 1, 2].map(|i| calibration.read.iter().find_map(|curve| curve.source.noted[i].clone()));
     let of_formula = |of: fn(&HandbookFormula) -> &'static str| formula.as_ref().map(|formula| of(formula).to_owned());
     TestRecord {
         specimen_kind: specimen.kind.name().to_owned(),
@@ -229,6 +231,7 @@ pub fn test(calibration: &CalibrationCase) -> TestRecord {
         formula_range: of_formula(|formula| formula.range),
         orientation,
         environment,
+        waveform,
     }
 }
 

@@ -343,7 +343,7 @@ fn named<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, key: &str, name: &s
 }
 
 fn found(file: &str, content: &[u8], import: &Import) -> FoundFile {
-    let Survey { header, first_rows, layout, measured, problems } = survey(content, Path::new(file), import);
+    let Survey { header, first_rows, layout, measured, problems, .. } = survey(content, Path::new(file), import);
     let unit = |column: &Column| if let Named::Is(unit) = column.unit { unit.name() } else { "" };
     let lengths = |layout: &Layout| -> Vec<usize> {
         layout.series.iter().flat_map(|series| &series.lengths).map(|column| column.index).collect()

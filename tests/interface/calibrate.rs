@@ -149,6 +149,33 @@ fn a_table_gets_its_calibration_file() {
         fs::write(dir.path().join("lab.toml"), lines.replace("length_mm = <...>", "")).unwrap();
         done(dir.path(), "check lab.toml");
     }
+    // So do the lines above the table: what is certain is read, an alloy that is no name of the library is a comment.
+    let german = "Werkstoff;7075-T651\nProbenform;C(T)\nW (mm);50,00\nB (mm);6,35\nR;0,1\n";
+    let rows: String = (0..6).map(|i| format!("{},0;{},0\n", i, 12 + i)).collect();
+    let english =
+        "# Specimen type: compact tension\n# Material: al2024-t3\n# W = 2 in, B = 6.35 mm, R = 0.1\n# B: 1,250 mm, R = 3 mm\n";
+    for (above, table, lines) in [
+        (
+            german,
+            format!("N (x1000);a (mm)\n{rows}"),
+            [
+                "kind = \"compact_tension\"",
+                "width_mm = 50",
+                "thickness_mm = 6.35",
+                "name = <...> # Material in the file: 7075-T651; ",
+            ],
+        ),
+        (
+            english,
+            "cycles,a (mm)\n0,9\n1000,9.5\n2000,10\n3000,10.6\n".to_owned(),
+            ["kind = \"compact_tension\"", "width_mm = 50.8", "thickness_mm = 6.35", "name = \"al2024-t3\"\n"],
+        ),
+    ] {
+        fs::write(dir.path().join("lab.csv"), above.to_owned() + &table).unwrap();
+        let message = texts(&perilife(dir.path(), "calibrate lab.csv --out fit")).1;
+        assert_says(&message, &lines);
+        assert!(message.contains("stress_ratio = 0.1") && !message.contains("length_mm = <...> # of"), "{message}");
+    }
     // What the table does not say stays open.
     fs::write(dir.path().join("lab.csv"), "cycles,crack_length_mm\n0,9\n1000,9.5\n2000,10\n3000,10.6\n4000,11.3\n").unwrap();
     let message = texts(&perilife(dir.path(), "check lab.csv")).1;

@@ -395,16 +395,18 @@ fn what_a_table_says_against_its_columns_is_told() {
 fn orientation_and_environment_above_a_table_are_noted() {
     let noted = |above: &str| {
         let measured = read(&format!("{above}\n{}", table("N;a (mm)", "{n};{a}")), &plain()).unwrap();
-        let [orientation, environment] = measured.curves[0].source.noted.clone();
-        (orientation.unwrap_or_default(), environment.unwrap_or_default())
+        let [orientation, environment, waveform] = measured.curves[0].source.noted.clone();
+        [orientation, environment, waveform].map(Option::unwrap_or_default)
     };
     let cases = [
-        ("Material: 7075-T651, L-T, t = 6 mm\nEnvironment: lab air, 23 °C\nMachine: 100 kN", "L-T", "lab air, 23 °C"),
-        ("# orientation T-L\n# Test temperature = 22 C\n# laboratory air", "T-L", "22 C, laboratory air"),
-        ("Specimen 7;repair 3\nW = 50 mm", "", ""),
-        ("Humidity: 45 % RH", "", "Humidity: 45 % RH"),
+        ("Material: 7075-T651, L-T, t = 6 mm\nEnvironment: lab air, 23 °C\nMachine: 100 kN", "L-T", "lab air, 23 °C", ""),
+        ("# orientation T-L\n# Test temperature = 22 C\n# laboratory air", "T-L", "22 C, laboratory air", ""),
+        ("Specimen 7;repair 3\nW = 50 mm", "", "", ""),
+        ("Humidity: 45 % RH", "", "Humidity: 45 % RH", ""),
+        ("Orientierung;LT\nFrequenz (Hz);10\nPrüftemperatur (°C);23\nUmgebung;Laborluft", "L-T", "23 °C, Laborluft", "10 Hz"),
+        ("Frequency: 10 Hz, Waveform: sine\nEnvironmental data: none\nLT 4", "", "", "10 Hz, sine"),
     ];
-    for (above, orientation, environment) in cases {
-        assert_eq!(noted(above), (orientation.to_owned(), environment.to_owned()), "{above}");
+    for (above, orientation, environment, waveform) in cases {
+        assert_eq!(noted(above), [orientation, environment, waveform], "{above}");
     }
 }

@@ -192,7 +192,7 @@ pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, words: &dyn Vocabulary) 
     };
     let header_line = place.header.map_or(0, |header| rows[header].line);
     let above = place.header.unwrap_or(0);
-    let in_words = |row: &Row| (row.line, row.cells.iter().filter(|cell| !cell.is_empty()).collect::<Vec<_>>().join(" "));
+    let in_words = |row: &Row| (row.line, row.cells.iter().filter(|cell| !cell.is_empty()).collect::<Vec<_>>().join("; "));
     let preamble = rows[..above].iter().map(in_words).collect();
     let end = without_footer(&rows).max(place.body);
     let footer = rows.get(end).map(|first| [first.line, rows[rows.len() - 1].line]);
