@@ -87,6 +87,8 @@ pub struct InspectionsRecord {
     /// End of the life that they are of: that of the 5 % plate where there is a band.
     #[serde(default)]
     pub end_cycles: f64,
+    #[serde(default)]
+    pub first_inspection_cycles: f64,
     /// Probability that all of them miss the crack.
     pub missed: f64,
     pub rows: Vec<InspectionRow>,
@@ -127,26 +129,30 @@ impl InspectionsRecord {
             }
         }
         let [a50_mm, a90_mm] = [detection.a50, detection.a90].map(|length| clean(length / MM));
-        let (missed, end_cycles) = (rows.last().map_or(1.0, |row| row.missed), knots.last()?[1]);
-        Some(InspectionsRecord { a50_mm, a90_mm, interval_cycles: schedule.cycles[1], end_cycles, missed, rows })
+        let ([first_inspection_cycles, interval_cycles], end_cycles) = (schedule.cycles, knots.last()?[1]);
+        let missed = rows.last().map_or(1.0, |row| row.missed);
+        Some(InspectionsRecord { a50_mm, a90_mm, interval_cycles, end_cycles, first_inspection_cycles, missed, rows })
     }
 
     pub fn words(&self, known: &Quantiles) -> String {
-        let (count, missed) = (self.rows.len(), chance(self.missed));
+        let first = PLAIN.promised(self.first_inspection_cycles, self.interval_cycles, known);
+        let found = match (self.rows.len(), self.too_late()) {
+            (_, Some(why)) => why,
+            (count, None) => format!("{count} inspections, first at {first} cycles; all miss the crack: {}", chance(self.missed)),
+        };
         let [half, most] = [self.a50_mm, self.a90_mm].map(|length| mm(length * MM));
-        let cycles = |cycles: f64| PLAIN.promised_by(cycles, self.interval_cycles, known);
-        let first = self.rows.first().map_or_else(String::new, |row| format!(", first at {} cycles", cycles(row.cycles)));
-        format!(
-            "  POD            {count} inspections{first}; all miss the crack: {missed} (independence assumed; a50 {half} mm, a90 {most} mm)"
-        )
+        format!("  POD            {found} (independence assumed; a50 {half} mm, a90 {most} mm)")
     }
 
-    /// Why there is none.
-    pub fn warning(&self, first: f64) -> Option<String> {
-        let [first, end] = [first, self.end_cycles].map(|cycles| PLAIN.whole(cycles));
-        let words = format!("inspections: first at {first} cycles, after the end of the inspected life at {end} cycles: the crack is never \
-             inspected (non-conservative); set --first-inspection below {end}, or remove it");
-        self.rows.is_empty().then_some(words)
+    fn too_late(&self) -> Option<String> {
+        let [first, end] = [self.first_inspection_cycles, self.end_cycles].map(|cycles| PLAIN.whole(cycles));
+        self.rows.is_empty().then(|| format!("first at {first} cycles, after the end of the inspected life at {end} cycles"))
+    }
+
+    /// Why the crack is never inspected.
+    pub fn warning(&self) -> Option<String> {
+        let remedy = "set an earlier --first-inspection, or remove it";
+        self.too_late().map(|why| format!("inspections: {why}: the crack is never inspected (non-conservative); {remedy}"))
     }
 }
 
@@ -272,12 +278,8 @@ impl Sensitivities {
 
     pub fn words(&self) -> String {
         let told = |entry: &SensitivityRecord| {
-            let unlimited = || "not available (unlimited life)".to_owned();
-            format!(
-                "{} {}",
-                entry.change,
-                entry.change_of_life_percent.map_or_else(unlimited, |change| format!("{change:+.1} %"))
-            )
+            let change = entry.change_of_life_percent.map(|change| format!("{} %", PLAIN.signed(change, 1)));
+            format!("{} {}", entry.change, change.unwrap_or_else(|| "not available (unlimited life)".to_owned()))
         };
         let of_pair = |pair: &&[SensitivityRecord]| {
             format!("{} {}", pair[0].input, pair.iter().map(told).collect::<Vec<String>>().join(", "))

@@ -149,8 +149,7 @@ impl Lives {
             (Err(_), _) => run,
         };
         knots.extend([[run, reached], [life, reached + inspection.remaining_cycles_p05.unwrap_or(life - run)]]);
-        knots.dedup_by(|after, before| after[0] <= before[0]);
-        (knots.len() > 1).then_some(knots)
+        Some(knots)
     }
 
     pub fn life(&self) -> Option<Quantiles> {
@@ -199,8 +198,7 @@ impl Lives {
                 let count = plate.lot.specimens.len();
                 let specimens = if count == 1 { "1 specimen".to_owned() } else { format!("{count} specimens") };
                 let share = self.share_outside.map(|share| 100.0 * share).filter(|percent| *percent >= NONE_PERCENT);
-                let outside =
-                    share.map_or_else(String::new, |share| format!("; {share:.1} % of the life outside the tested ΔK"));
+                let outside = share.map_or_else(String::new, |share| format!("; {share:.1} % of the life outside the tested ΔK"));
                 lines.push(format!("  Scatter band   from {specimens}, {lot}{other}{assumed}{outside}"));
             }
             Err(why) => lines.push(format!("  Scatter band   not available: {why}")),
@@ -219,19 +217,14 @@ impl Lives {
     }
 }
 
-/// Of knots `[x, y]` with straight lines between them, two at least.
+/// Of knots `[x, y]` with straight lines between them.
 pub fn at(knots: &[[f64; 2]], x: f64) -> f64 {
-    let after = knots.partition_point(|knot| knot[0] < x).clamp(1, knots.len() - 1);
-    let ([from, low], [to, high]) = (knots[after - 1], knots[after]);
-    low + (x - from) / (to - from) * (high - low)
+    let after = knots.partition_point(|knot| knot[0] < x).min(knots.len() - 1);
+    let ([from, low], [to, high]) = (knots[after.saturating_sub(1)], knots[after]);
+    if to > from { low + (x - from) / (to - from) * (high - low) } else { high }
 }
 
-fn inspection_words(
-    inspection: &Inspection,
-    per_pass: Option<f64>,
-    of_fleet: Option<f64>,
-    error: Option<f64>,
-) -> Vec<String> {
+fn inspection_words(inspection: &Inspection, per_pass: Option<f64>, of_fleet: Option<f64>, error: Option<f64>) -> Vec<String> {
     let (length, factor, quantiles) = (short(inspection.crack_length_mm), inspection.factor, inspection.quantiles());
     let left = || format!("{} cycles", PLAIN.by_error(inspection.remaining_cycles, error));
     let left = quantiles.map_or_else(left, |all| band_words(&all));
@@ -254,7 +247,7 @@ pub fn no_band_to_narrow(curve: &MeasuredCurve, why: &str) -> perilife_base::err
 pub fn every_words(cycles: f64, band: &Quantiles, per_pass: Option<f64>) -> String {
     let passes =
         per_pass.map_or_else(String::new, |each| format!(" ({} passes)", short((100.0 * cycles / each).floor() / 100.0)));
-    format!("{} cycles{passes}", PLAIN.promised(cycles, band))
+    format!("{} cycles{passes}", PLAIN.promised(cycles, cycles, band))
 }
 
 pub fn interval_words(inspection: &Inspection, per_pass: Option<f64>, error: Option<f64>) -> String {

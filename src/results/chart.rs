@@ -21,8 +21,8 @@ const GRID: &str = "#e3e7ec";
 /// Width of a broad line, px, and its cover.
 const BROAD: f64 = 7.0;
 const FAINT: &str = "66";
-/// Distance up to which a curve passes the end that is named, px.
-const SHARED: f64 = 12.0;
+/// Distance up to which ends of curves share a name, px.
+const SHARED: f64 = 5.0;
 /// Colours of several series, which differ in lightness too.
 pub const COLOURS: [&str; 6] = [COMPUTED, SECOND, "#1b8a6b", "#8a4fa3", NOTE, "#4fa3d1"];
 /// Size of a chart in a file of its own, px, and of its numbers.
@@ -330,9 +330,10 @@ impl Frame {
             parts.map(|at| distance(place.nearest(at), at)).fold(f64::INFINITY, f64::min)
         };
         let curves: Vec<Vec<Point>> = curves.iter().map(|curve| self.pixels(curve)).collect();
-        for ((place, end), (words, _, colour)) in place_labels(room, &ends, &line, &all, &sizes).into_iter().zip(&ends).zip(named) {
+        for ((place, end), (words, _, colour)) in place_labels(room, &ends, &line, &all, &sizes).into_iter().zip(&ends).zip(named)
+        {
             let own = distance(place.nearest(*end), *end);
-            let is_other = |curve: &&Vec<Point>| curve.iter().all(|at| distance(*at, *end) > SHARED);
+            let is_other = |curve: &&Vec<Point>| curve.last().is_none_or(|last| distance(*last, *end) > SHARED);
             if curves.iter().filter(is_other).any(|curve| reach(&place, curve) < own) {
                 continue;
             }

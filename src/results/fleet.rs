@@ -18,7 +18,7 @@ use perilife_calibration::inspection::Inspection;
 use perilife_calibration::sweep::detection::Detection;
 use perilife_calibration::sweep::fleet::{self, FleetLives, FleetPlate, Looked, Looks};
 use perilife_growth::case::{Case, Fleet};
-use perilife_growth::predict::{CurvePoint, Prediction};
+use perilife_growth::predict::Prediction;
 use perilife_plate::specimen::Point;
 
 /// What is asked for; a fleet is by the section of the case.
@@ -91,7 +91,7 @@ impl FleetReport {
         asked: Asked,
     ) -> Result<Self> {
         let looks = inspection.map(|inspection| Looks {
-            detectable: detectable(case, own, inspection),
+            detectable: inspection.crack_length_governing_mm * MM,
             factor: inspection.factor,
             detection: asked.detection,
             first: asked.first_inspection,
@@ -206,7 +206,7 @@ impl FleetReport {
             Some(Looked { first, every, before_first, missed, .. }) => format!(
                 "; inspected after {} cycles, then every {}: all miss the crack of a plate: {} ({before_first} plates fail before the \
                  first)",
-                PLAIN.promised(*first, &OF_FLEET),
+                PLAIN.promised(*first, *first, &OF_FLEET),
                 every_words(*every, &OF_FLEET, self.per_pass),
                 chance(*missed)
             ),
@@ -224,20 +224,4 @@ pub fn words_of(lives: &LifeQuantiles, format: Format) -> [String; 3] {
         let (above, figure) = words.split_at(if words.starts_with(ABOVE) { ABOVE.len() } else { 0 });
         figure.parse::<f64>().map_or_else(|_| words.to_owned(), |life| format!("{above}{}", format.by_band(life, &OF_FLEET)))
     })
-}
-
-/// Length of the crack that ends the life when the one that is inspected has its length, m: the way is that of the run.
-fn detectable(case: &Case, prediction: &Prediction, inspection: &Inspection) -> f64 {
-    let own = inspection.crack_length_mm * MM;
-    let Some((leads, _)) =
-        prediction.leading_tip(&case.specimen).filter(|(leads, _)| inspection.tip.is_some_and(|tip| tip != *leads))
-    else {
-        return own;
-    };
-    let rows = &prediction.curve;
-    let after = rows.partition_point(|row| row.cycles < inspection.cycles_at).clamp(1, rows.len() - 1);
-    let [from, to] = [&rows[after - 1], &rows[after]];
-    let share = (inspection.cycles_at - from.cycles) / (to.cycles - from.cycles).max(f64::MIN_POSITIVE);
-    let length = |row: &CurvePoint| row.crack_length_of(&case.specimen, leads).unwrap_or(own);
-    length(from) + share.clamp(0.0, 1.0) * (length(to) - length(from))
 }

@@ -5,8 +5,6 @@
 //! Results in US units, and back: numbers by the units that their keys end in; words of a file are metric and converted where they are shown. What the program reads back as input
 //! stays metric: `fitted.toml`, `case.toml` and `inputs/`, checkpoints; so do `case` in results, files for ParaView and Parquet.
 
-use std::borrow::Cow;
-
 use serde_json::{Map, Value};
 
 use perilife_base::units::MM;
@@ -58,6 +56,12 @@ impl Format {
         self.digits(if is_zero { text.trim_start_matches('-') } else { &text })
     }
 
+    /// The same with its sign, none of what is zero in these decimals.
+    pub fn signed(self, value: f64, decimals: usize) -> String {
+        let text = self.fixed(value, decimals);
+        if value > 0.0 && text.contains(|c| matches!(c, '1'..='9')) { format!("+{text}") } else { text }
+    }
+
     /// With at most four decimals, without zeros at its end.
     pub fn short(self, value: f64) -> String {
         self.digits(trimmed(&format!("{value:.4}")))
@@ -87,13 +91,8 @@ impl Format {
         self.by_band(cycles, &within(percent))
     }
 
-    /// A promise, rounded down to the digits that a band deserves.
-    pub fn promised(self, cycles: f64, band: &[f64; 3]) -> String {
-        self.significant(cycles, digits(band), f64::floor)
-    }
-
-    /// Cycles that come after an interval each, rounded down as that is.
-    pub fn promised_by(self, cycles: f64, interval: f64, band: &[f64; 3]) -> String {
+    /// A promise, rounded down to the digits that an interval deserves by a band.
+    pub fn promised(self, cycles: f64, interval: f64, band: &[f64; 3]) -> String {
         let unit = 10f64.powi(place(interval, digits(band)).max(0));
         self.whole((cycles / unit).floor() * unit)
     }
@@ -192,7 +191,7 @@ const ERRORS: &str = "standard_errors";
 const CONSTANTS: &str = "constants";
 
 /// A result in the units of `to`: numbers by their keys, and words by `told`.
-fn of_result(value: &Value, to: System, told: fn(&str) -> String) -> Value {
+pub fn of_result(value: &Value, to: System, told: fn(&str) -> String) -> Value {
     match value {
         Value::Object(fields) => of_fields(fields, fields, to, told),
         Value::Array(items) => items.iter().map(|item| of_result(item, to, told)).collect(),
@@ -237,13 +236,17 @@ fn scaled(value: &Value, factor: f64) -> Value {
 }
 
 /// A result as it is printed, in the units that are shown.
-pub fn shown_result(value: &Value) -> Cow<'_, Value> {
-    if shown() == System::Si { Cow::Borrowed(value) } else { Cow::Owned(of_result(value, shown(), told)) }
+pub fn shown_result(value: &Value) -> Value {
+    in_shown(value, told)
 }
 
 /// A result as it is written: numbers in the units that are shown, words metric, so that a report in either units rounds once.
 pub fn written_result(value: &Value) -> Value {
-    of_result(value, shown(), str::to_owned)
+    in_shown(value, str::to_owned)
+}
+
+fn in_shown(value: &Value, told: fn(&str) -> String) -> Value {
+    if shown() == System::Si { value.clone() } else { of_result(value, shown(), told) }
 }
 
 /// Now, RFC 3339 in UTC to the second: `2026-11-25T19:01:55Z`.

@@ -120,30 +120,28 @@ fn why_method(case: &Case) -> String {
 
 /// The formula of method `handbook`. Other keys of `[model]` say nothing there.
 fn hand_calculation(case: &Case) -> Vec<Choice> {
+    let choice = |key, value: Option<&str>, why: Option<&str>| Choice { key, value: value.into(), why: why.map(str::to_owned) };
+    let method = Choice { why: Some(why_method(case)), ..choice("method", Some(case.model.method().name()), None) };
+    let of_kind = Some("of the specimen kind");
     if let Some(flaw) = &case.specimen.part_through {
-        let choice = |key, value: String, why| Choice { key, value: value.into(), why };
+        let formula = format!("Newman and Raju, {}", flaw.kind().name().replace('_', " "));
+        let through = Some("the through crack of the same plate");
         return vec![
-            choice("method", case.model.method().name().to_owned(), Some(why_method(case))),
-            choice(
-                "formula",
-                format!("Newman and Raju, {}", flaw.kind().name().replace('_', " ")),
-                Some("of the specimen kind".to_owned()),
-            ),
-            choice("source", SOURCE.to_owned(), None),
-            choice("range", RANGE.to_owned(), None),
-            choice(
-                "once_through",
-                Method::ElementFreeGalerkin.name().to_owned(),
-                Some("the through crack of the same plate".to_owned()),
-            ),
+            method,
+            choice("formula", Some(&formula), of_kind),
+            choice("source", Some(SOURCE), None),
+            choice("range", Some(RANGE), None),
+            choice("once_through", Some(Method::ElementFreeGalerkin.name()), through),
         ];
     }
     let formula = handbook(&case.specimen);
-    let why = if case.specimen.beta.is_some() { "given in the case" } else { "of the specimen kind" };
-    let choice = |key, value: Option<&str>, why: Option<&str>| Choice { key, value: value.into(), why: why.map(str::to_owned) };
     vec![
-        Choice { why: Some(why_method(case)), ..choice("method", Some(case.model.method().name()), None) },
-        choice("formula", formula.as_ref().map(|formula| formula.name), Some(why)),
+        method,
+        choice(
+            "formula",
+            formula.as_ref().map(|formula| formula.name),
+            case.specimen.beta.as_ref().map_or(of_kind, |_| Some("given in the case")),
+        ),
         choice("source", formula.as_ref().map(|formula| formula.source), None),
         choice("range", formula.as_ref().map(|formula| formula.range), None),
     ]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
-use super::answers::{Answers, Asked};
+use super::answers::{Answers, Asked, InspectionsRecord};
 use super::band::{Lives, Quality, band_words, known_within};
 use super::chart::{self, LARGE, Mark, Series};
 use super::checks::{Judgement, Message, Validity, messages};
@@ -99,8 +99,7 @@ impl Judged {
         let mut record = RunRecord::of(case, prediction, &judgement, &lives, &quality);
         let (strengths, missed) = strengths.map_or_else(|error| (None, Some(error)), |strengths| (strengths, None));
         let (answers, unanswered) = answers.map_or_else(|error| (Answers::default(), Some(error)), |answers| (answers, None));
-        let never = answers.inspections.as_ref().zip(wanted.asked.first_inspection).and_then(|(all, first)| all.warning(first));
-        record.warnings.extend(never);
+        record.warnings.extend(answers.inspections.as_ref().and_then(InspectionsRecord::warning));
         record.inspections.clone_from(&answers.inspections);
         record.fleet = answers.fleet.as_ref().map(|fleet| fleet.record.clone());
         record.sensitivities = answers.sensitivities.as_ref().map(|all| all.0.clone());

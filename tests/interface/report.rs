@@ -211,9 +211,8 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
         (page, json(dir.path().join("run/result.json")))
     };
     // Cycles as the report writes them, by the stated error of the life.
-    let by_error = |cycles: f64, result: &Value| {
-        format!("{} cycles", PRINT.by_error(cycles, result["error_estimate_percent"].as_f64()))
-    };
+    let by_error =
+        |cycles: f64, result: &Value| format!("{} cycles", PRINT.by_error(cycles, result["error_estimate_percent"].as_f64()));
 
     let (page, result) = run("spectrum_panel.toml", "--set loading.omission_percent=20 --set loading.truncation_percent=95");
     let (life, mean) = (&result["life_cycles"], &result["spectrum"]["life_cycles_without_retardation"]);
@@ -260,13 +259,17 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
         &page,
         &[
             PRINT.by_band(looks["detectable_to_critical_cycles"]["p95"].as_f64().unwrap(), &OF_FLEET),
-            PLAIN.promised(looks["interval_cycles"].as_f64().unwrap(), &OF_FLEET),
+            PLAIN.promised(looks["interval_cycles"].as_f64().unwrap(), looks["interval_cycles"].as_f64().unwrap(), &OF_FLEET),
         ],
     );
     let (page, _) = run("two_cracks_plate.toml", "--residual-strength");
     assert_says(
         &page,
-        &["Crack extension of each tip against cycles", "<h1 class=\"sheet\">Residual strength</h1>", "Load that the cracked plate can carry"],
+        &[
+            "Crack extension of each tip against cycles",
+            "<h1 class=\"sheet\">Residual strength</h1>",
+            "Load that the cracked plate can carry",
+        ],
     );
     assert!(page.contains("circles at 25, 50, 75 and 90 % of life") && !page.contains(">25 %<"), "words at one crack alone");
     run("fleet_of_panels.toml", "--inspect-from 10 --pod 12,25");

@@ -169,8 +169,9 @@ fn keys_in_words_are_those_of_the_units() {
         assert_eq!(with_keys(us, System::Us), *us, "told twice");
     }
     let result = json!({ "checks": [{ "remedy": told[0][0] }] });
-    let us = of_result(&result, System::Us);
-    assert_eq!((&us["checks"][0]["remedy"], of_result(&us, System::Si)), (&json!(told[0][1]), result));
+    let us = of_result(&result, System::Us, |words| with_keys(words, System::Us));
+    assert_eq!(us["checks"][0]["remedy"], json!(told[0][1]));
+    assert_eq!(of_result(&result, System::Us, str::to_owned), result, "words of a file are metric");
 }
 
 #[test]
@@ -188,7 +189,7 @@ fn tables_and_results_go_there_and_back() {
         "constants": { "nasgro_n": 3.0, "nasgro_c_mm_per_cycle": 1e-8 }, "standard_errors": { "nasgro_n": 0.1, "nasgro_c_mm_per_cycle": 1e-9 },
         "path_error_estimate_mm": null, "checks": [{ "words": "thickness 2.54 mm" }],
     });
-    let us = of_result(&result, System::Us);
+    let us = of_result(&result, System::Us, |words| with_keys(words, System::Us));
     assert_eq!((&us["plate"]["outline_in"][0][0], &us["largest_displacement"]["in"]), (&json!(1.0), &json!(0.1)));
     assert_eq!((&us["case"], &us["checks"][0]["words"]), (&result["case"], &json!("thickness 0.1000 inch")));
     let [c, error] = ["constants", "standard_errors"].map(|of| us[of]["nasgro_c_in_per_cycle"].as_f64().unwrap());

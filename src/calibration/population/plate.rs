@@ -204,10 +204,7 @@ impl Plate {
                 _ => [f64::NAN; 3],
             }
         };
-        Ok(PlateBand {
-            reached: (0..count).map(reached_at).collect(),
-            left: (0..count).map(left_at).collect(),
-        })
+        Ok(PlateBand { reached: (0..count).map(reached_at).collect(), left: (0..count).map(left_at).collect() })
     }
 
     /// Quantiles of a piece of the path for every row, `run` being its cycles in the run, which goes by the law of the lot and is the median: at

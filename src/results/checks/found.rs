@@ -140,7 +140,9 @@ fn extrapolation(case: &Case, prediction: &Prediction) -> Vec<Check> {
         let percent = 100.0 * share;
         let words = match percent < NONE_PERCENT {
             true => format!("Extrapolation: none {range}"),
-            false if side == Side::Conservative => format!("Extrapolation: {percent:.1} % of life at ΔK {range} (usually conservative)"),
+            false if side == Side::Conservative => {
+                format!("Extrapolation: {percent:.1} % of life at ΔK {range} (usually conservative)")
+            }
             false => format!("Extrapolation: {percent:.1} % of life at ΔK {range} (non-conservative)"),
         };
         Check::sized(name, percent, share > OUTSIDE_CAUTION, side, words, remedy)

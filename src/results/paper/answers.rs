@@ -38,7 +38,7 @@ fn inspections(run: &RunRecord, found: &InspectionsRecord) -> String {
     let error = run.error_estimate_percent;
     let known = run.inspection.as_ref().map_or_else(|| within(error), |inspection| known_within(inspection, error));
     let row = |row: &InspectionRow| {
-        let cycles = PRINT.promised_by(row.cycles, found.interval_cycles, &known);
+        let cycles = PRINT.promised(row.cycles, found.interval_cycles, &known);
         let length = PRINT.length(row.crack_length_mm * MM, 2);
         vec![cycles, length, probability(row.pod), probability(row.missed)]
     };
@@ -59,12 +59,8 @@ fn inspections(run: &RunRecord, found: &InspectionsRecord) -> String {
     )
 }
 
-pub(super) fn quantile_words(of: &LifeQuantiles) -> [String; 3] {
-    words_of(of, PRINT).map(|words| quoted(&words))
-}
-
 fn quantiles(of: &LifeQuantiles) -> String {
-    let [low, middle, high] = quantile_words(of);
+    let [low, middle, high] = words_of(of, PRINT);
     format!("5 % {low}, median {middle}, 95 % {high} cycles")
 }
 
@@ -93,7 +89,7 @@ fn fleet(fleet: &FleetRecord, per_pass: Option<f64>, drawings: &Drawings) -> Str
         if let (Some(first), Some(before), Some(every)) =
             (looks.first_inspection_cycles, looks.break_before_first_inspection, looks.interval_cycles)
         {
-            let (first, every) = (PRINT.promised(first, &OF_FLEET), every_words(every, &OF_FLEET, per_pass));
+            let (first, every) = (PRINT.promised(first, first, &OF_FLEET), every_words(every, &OF_FLEET, per_pass));
             rows.push(("First inspection", format!("after {first} cycles for all plates; {} plates fail before", count(before))));
             rows.push(("Inspection interval", format!("{every} (5 % remaining life / {})", PRINT.short(looks.factor))));
         }
@@ -113,9 +109,7 @@ fn sensitivities(run: &RunRecord, all: &[SensitivityRecord], drawings: &Drawings
         let by_error = |life: f64| PRINT.by_error(life, run.error_estimate_percent);
         let life = row.life_cycles.map_or_else(|| "unlimited".to_owned(), by_error);
         let bound = if row.life_is_lower_bound { "≥ " } else { "" };
-        let change = known(row.change_of_life_percent, |change| {
-            format!("{}{} %", if change > 0.0 { "+" } else { "" }, PRINT.fixed(change, 1))
-        });
+        let change = known(row.change_of_life_percent, |change| format!("{} %", PRINT.signed(change, 1)));
         let [input, by] = [&row.input, &row.change].map(|text| quoted(text));
         vec![input, by, format!("{bound}{life}"), change, row.ended_by.name().replace('_', " ")]
     };

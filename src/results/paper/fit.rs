@@ -220,7 +220,9 @@ fn readings(readings: &[Reading]) -> String {
     let row = |(place, reading): (usize, &Reading)| {
         let flags =
             [quoted(&reading.marks.replace('_', " ")), if reading.method == "secant" { "secant".into() } else { "".into() }];
-        let excluded = Some(quoted(&reading.left_out)).filter(|why| !why.is_empty()).map(|why| if why == OUTSIDE { why } else { format!("excluded: {why}") });
+        let excluded = Some(quoted(&reading.left_out))
+            .filter(|why| !why.is_empty())
+            .map(|why| if why == OUTSIDE { why } else { format!("excluded: {why}") });
         let flags: Vec<String> = flags.into_iter().filter(|words| !words.is_empty()).chain(excluded.clone()).collect();
         let cells = vec![
             (place + 1).to_string(),
@@ -280,7 +282,7 @@ pub fn of_laws(fit: &RatesRecord, rates: &[RateFitted], signed: &Signed) -> (Str
 
 fn constants(fit: &RatesRecord) -> String {
     let both = json!({ "constants": fit.constants, "standard_errors": fit.standard_errors });
-    let fit = &*shown_result(&both);
+    let fit = shown_result(&both);
     let rows = fit["constants"].as_object().into_iter().flatten().map(|(key, value)| {
         let error =
             fit["standard_errors"][key].as_f64().map_or_else(String::new, |error| format!(" ± {}", PRINT.sized(error, 2)));

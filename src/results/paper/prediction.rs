@@ -2,7 +2,6 @@
 
 use serde_json::Value;
 
-use super::answers::quantile_words;
 use super::{
     Drawings, PRINT, Signed, answers, cards, figure, hashes, known, letter, mark, prose, quoted, recorded, signatures, software,
     table, terms, text,
@@ -11,7 +10,7 @@ use crate::band::{OF_FLEET, every_words, interval_words};
 use crate::chart::Size;
 use crate::checks::{Check, Side, Validity, Verdict};
 use crate::curve::RunTables;
-use crate::fleet::FleetInspections;
+use crate::fleet::{FleetInspections, words_of};
 use crate::pictures::curves::{a_n_svg, end_words, k_svg, length_name};
 use crate::pictures::plate::{Plate, plate_svg};
 use crate::record::RunRecord;
@@ -103,7 +102,7 @@ fn interval(run: &RunRecord) -> String {
     });
     let (left, band) = match (looks, inspection.quantiles()) {
         (Some(looks), _) => {
-            let [low, middle, high] = quantile_words(&looks.detectable_to_critical_cycles);
+            let [low, middle, high] = words_of(&looks.detectable_to_critical_cycles, PRINT);
             (middle, format!("median; 5 % to 95 % of plates: {low} to {high} cycles"))
         }
         (None, Some(all)) => {
@@ -158,7 +157,7 @@ fn life(run: &RunRecord) -> String {
     };
     let cycles = |value: &str| format!("{value} <small>cycles</small>");
     if let Some(fleet) = &run.fleet {
-        let [low, middle, high] = quantile_words(&fleet.life_cycles);
+        let [low, middle, high] = words_of(&fleet.life_cycles, PRINT);
         let (plates, run) = (PRINT.whole(fleet.plates as f64), PRINT.by_error(life, run.error_estimate_percent));
         let below = format!("median {middle}, 95 % {high} cycles, {plates} plates; nominal inputs: {run}");
         return card("Fleet life, 5 % of plates", &cycles(&low), &below);

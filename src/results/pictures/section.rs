@@ -1,6 +1,7 @@
 //! `section.svg`: the section of a plate through its part-through crack, with the front at quarters of the cycles until it is through.
 
 use super::plate::{SIZE, colour, scale_bar};
+use crate::band::at;
 use crate::chart::{INK, width_of};
 use crate::specimen_picture::sketch::{EDGE, PLATE, Sketch, WORDS};
 use perilife_base::units::MM;
@@ -47,11 +48,7 @@ pub fn section_svg(case: &Case, prediction: &Prediction) -> Option<String> {
 /// Semi-axes at cycles, linear between rows, m.
 fn axes_at(curve: &[CurvePoint], cycles: f64) -> [f64; 2] {
     let axes = |row: &CurvePoint| [row.depth.map_or(f64::NAN, |depth| depth.depth), row.crack_length];
-    let after = curve.partition_point(|row| row.cycles < cycles).min(curve.len() - 1);
-    let [from, to] = [&curve[after.saturating_sub(1)], &curve[after]];
-    let span = to.cycles - from.cycles;
-    let share = if span > 0.0 { ((cycles - from.cycles) / span).clamp(0.0, 1.0) } else { 0.0 };
-    [0, 1].map(|i| axes(from)[i] + share * (axes(to)[i] - axes(from)[i]))
+    [0, 1].map(|i| at(&curve.iter().map(|row| [row.cycles, axes(row)[i]]).collect::<Vec<_>>(), cycles))
 }
 
 /// From where to where the width is shown, m.

@@ -221,40 +221,32 @@ impl<'a> Drawing<'a> {
         // Shares of the life stand beside the longest way of one crack; beside those of several cracks they would cover others.
         let longest = self.ways.iter().map(Way::whole).fold(0.0, f64::max);
         let named = self.ways.iter().position(|way| way.whole() >= longest && longest > 0.0 && self.ways.len() <= 2);
-        for (number, way) in self.ways.iter().enumerate() {
-            if is_large && way.whole() > 0.0 {
-                self.marks(sketch, way, named == Some(number), &mut taken);
-            }
-            let end = sketch.place(way.at(way.whole()));
+        if is_large {
+            let grown = self.ways.iter().enumerate().filter(|(_, way)| way.whole() > 0.0);
+            grown.for_each(|(number, way)| self.marks(sketch, way, named == Some(number), &mut taken));
+        }
+        let ends: Vec<Point> = self.ways.iter().map(|way| sketch.place(way.at(way.whole()))).collect();
+        let names = if is_large && ends.len() > 1 { self.names(sketch, &ends, &taken) } else { Vec::new() };
+        for (number, end) in ends.into_iter().enumerate() {
             sketch.group(&format!(r#"class="tip" data-tip="{number}""#), |sketch| {
                 sketch.ring(end, if is_large { 4.5 } else { 3.0 }, INK, 1.8);
+                if let Some([x, y]) = names.get(number).map(|place| place.centre()) {
+                    sketch.name([x, y + 0.35 * self.text], &number.to_string(), "middle", self.text, INK);
+                }
             });
-        }
-        if is_large && self.ways.len() > 1 {
-            self.names(sketch, &taken);
         }
     }
 
-    /// Numbers of the tips, off cracks, ways, marks and their words.
-    fn names(&self, sketch: &mut Sketch, taken: &[Point]) {
-        let ends: Vec<Point> = self.ways.iter().map(|way| sketch.place(way.at(way.whole()))).collect();
-        let pixels = |places: &[Point]| places.iter().map(|at| sketch.place(*at)).chain([[f64::NAN; 2]]).collect::<Vec<_>>();
+    /// Places of the numbers of the tips, off cracks, ways and words that stand already.
+    fn names(&self, sketch: &Sketch, ends: &[Point], taken: &[Point]) -> Vec<Box2> {
         let drawn = self.ways.iter().map(|way| &way.places[..]).chain(self.plate.cracks_mm.iter().map(|ends| &ends[..]));
-        let words = taken.iter().flat_map(|[x, y]| [-1.4, 0.0, 1.4].map(|side| [x + side * self.text, *y]).into_iter().chain([[f64::NAN; 2]]));
-        let mut line: Vec<Point> = drawn.flat_map(pixels).chain(words).collect();
-        for (way, share) in self.ways.iter().flat_map(|way| MARKS.map(|share| (way, share))) {
-            if let Some(length) = way.length_at(share / 100.0 * self.life) {
-                let [x, y] = sketch.place(way.at(length));
-                line.extend([[x, y - 4.0], [x, y + 4.0], [f64::NAN; 2]]);
-            }
-        }
-        let numbers: Vec<String> = (0..ends.len()).map(|number| number.to_string()).collect();
-        let sizes: Vec<Point> = numbers.iter().map(|words| [width_of(words, self.text), self.text]).collect();
+        let line = drawn.flat_map(|places| places.iter().map(|at| sketch.place(*at)).chain([[f64::NAN; 2]]));
+        let words = taken.iter().flat_map(|[x, y]| [-1.2, 0.0, 1.2].map(|side| [x + side * self.text, *y]));
+        let points: Vec<Point> = ends.iter().copied().chain(words).collect();
         let frame = Box2 { low: [f64::NEG_INFINITY; 2], high: [f64::INFINITY; 2] };
         let all: Vec<usize> = (0..ends.len()).collect();
-        for (place, words) in place_labels(frame, &ends, &line, &all, &sizes).iter().zip(&numbers) {
-            sketch.name([place.centre()[0], place.centre()[1] + 0.35 * self.text], words, "middle", self.text, INK);
-        }
+        let sizes = vec![[width_of("0", self.text), self.text]; all.len()];
+        place_labels(frame, &points, &line.collect::<Vec<_>>(), &all, &sizes)
     }
 
     /// Steps of three pixels, each in the color of its middle.
