@@ -91,9 +91,9 @@ impl Format {
         self.by_band(cycles, &within(percent))
     }
 
-    /// A promise, rounded down to the digits that an interval deserves by a band.
+    /// A promise, rounded down to the digits that an interval deserves by a band; whole cycles are those that a user gave.
     pub fn promised(self, cycles: f64, interval: f64, band: &[f64; 3]) -> String {
-        let unit = 10f64.powi(place(interval, digits(band)).max(0));
+        let unit = if cycles.fract() == 0.0 { 1.0 } else { 10f64.powi(place(interval, digits(band)).max(0)) };
         self.whole((cycles / unit).floor() * unit)
     }
 

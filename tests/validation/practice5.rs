@@ -114,7 +114,7 @@ fn all_plates_of_a_fleet_are_inspected_after_the_same_cycles() {
     assert!((missed - 2.495e-3).abs() < 2e-4, "{missed}");
     assert_eq!((&looks["break_before_first_inspection"], &looks["first_inspection_cycles"]), (&7.into(), &115_191.0.into()));
     is_near(&looks["interval_cycles"], 22_451.0, 5e-3, "interval");
-    assert!(said.contains("inspected after 115191 cycles, then every 22 "), "{said}");
+    assert!(said.contains("inspected after 115 191 cycles, then every 22 "), "{said}");
     let (said, result) = predicted(dir.path(), asked);
     is_near(
         &result["fleet"]["inspections"]["first_inspection_cycles"],
