@@ -67,6 +67,7 @@ fn of_curve(
     let method = if curve.cycles.len() >= SEVEN { RateMethod::Polynomial7 } else { RateMethod::Secant };
     let mut points = rates(&curve, method);
     add_delta_k(&mut points, case, delta_k);
+    let [from, to] = calibration.window;
     let row = |(place, (&cycles, &length)): (usize, (&f64, &f64))| {
         let before = place.checked_sub(1).map_or(f64::NEG_INFINITY, |before| curve.cycles[before]);
         let belongs = |point: &&RatePoint| point.cycles == cycles || point.cycles > before && point.cycles < cycles;
@@ -76,7 +77,7 @@ fn of_curve(
         let by = point.map_or("", |point| if point.cycles == cycles { method.name() } else { RateMethod::Secant.name() });
         let left_out = match reasons[place].as_deref() {
             Some(reason) => reason,
-            None if is_outside(calibration, length) => OUTSIDE,
+            None if length < from || length > to => OUTSIDE,
             None => "",
         };
         Reading {
@@ -91,17 +92,6 @@ fn of_curve(
         }
     };
     curve.cycles.iter().zip(&curve.crack_length).enumerate().map(row).collect()
-}
-
-fn is_outside(calibration: &CalibrationCase, length: f64) -> bool {
-    !(calibration.window[0]..=calibration.window[1]).contains(&length)
-}
-
-/// Number of readings that are not left out, but outside the fit window.
-pub fn outside_window(calibration: &CalibrationCase, left_out: &[LeaveOut]) -> usize {
-    let reasons = calibration.read.iter().flat_map(|curve| reasons(curve, left_out, calibration.read.len() == 1));
-    let lengths = calibration.read.iter().flat_map(|curve| &curve.crack_length);
-    lengths.zip(reasons).filter(|(length, reason)| reason.is_none() && is_outside(calibration, **length)).count()
 }
 
 /// Why the growth up to each reading does not count; the first reading goes with the second.

@@ -19,7 +19,7 @@ use perilife_calibration::calibrate::Fitted;
 use perilife_calibration::case::CalibrationCase;
 use perilife_calibration::fit::Fit;
 use perilife_calibration::rates::STEP_MIN;
-use perilife_calibration::readings::{OUTSIDE, outside_window, readings};
+use perilife_calibration::readings::{OUTSIDE, Reading, readings};
 use perilife_calibration::record::FitRecord;
 use perilife_calibration::results::{fit_curves, fitted_rates, left_out, rates_beside_law, rates_taken};
 use perilife_growth::case::{Case, RECORD};
@@ -58,19 +58,16 @@ impl Kept {
         let tables = match fitted {
             Fitted::Lives(calibration, fit) => {
                 let (delta_k, left_out) = (|length: f64| fit.delta_k(calibration, length), left_out(calibration, fit));
-                let tables = [
-                    fit_curves(fit),
-                    band(calibration, fit),
-                    fitted_rates(calibration, fit),
-                    readings(calibration, &left_out, &delta_k),
-                ]
-                .map(Table::with_text)
-                .to_vec();
+                let readings = readings(calibration, &left_out, &delta_k);
+                let outside = readings.records()?.iter().filter(|row: &&Reading| row.left_out == OUTSIDE).count();
+                let tables = [fit_curves(fit), band(calibration, fit), fitted_rates(calibration, fit), readings]
+                    .map(Table::with_text)
+                    .to_vec();
                 let texts = tables.iter().map(|(table, text)| (&*table.file, &**text));
                 let texts = std::iter::once((Path::new(LAW_FILE), &*law)).chain(texts);
                 let beside = OfTest {
                     test: test(calibration),
-                    criteria: criteria(calibration, &left_out, &delta_k),
+                    criteria: criteria(calibration, (&left_out, outside), &delta_k),
                     plate: Plate::of(&calibration.case),
                     made_by: MadeBy::of(&calibration.case.provenance, texts),
                 };
@@ -246,7 +243,7 @@ fn criterion(
 }
 
 /// The criteria of ASTM E647 that readings and specimen can be checked against.
-pub fn criteria(calibration: &CalibrationCase, left_out: &[LeaveOut], delta_k: &dyn Fn(f64) -> f64) -> Vec<Criterion> {
+pub fn criteria(calibration: &CalibrationCase, left_out: (&[LeaveOut], usize), delta_k: &dyn Fn(f64) -> f64) -> Vec<Criterion> {
     let mut case = calibration.case.clone();
     case.material.yield_strength = calibration.yield_strength;
     let size = checks::of_case(&case).into_iter().find(|check| check.name == "e647_size");
@@ -264,7 +261,7 @@ pub fn criteria(calibration: &CalibrationCase, left_out: &[LeaveOut], delta_k: &
     all.push(ligament(calibration, &case, delta_k));
     all.push(steps(&calibration.read));
     all.push(symmetry(&calibration.read, &case));
-    all.push(readings_left_out(left_out, calibration));
+    all.push(readings_left_out(left_out, calibration.left_out.len()));
     all
 }
 
@@ -320,8 +317,7 @@ fn symmetry(curves: &[MeasuredCurve], case: &Case) -> Criterion {
 }
 
 /// Those that the user excluded, and how many others are outside the fit window.
-fn readings_left_out(left_out: &[LeaveOut], calibration: &CalibrationCase) -> Criterion {
-    let (by_user, outside) = (calibration.left_out.len(), outside_window(calibration, left_out));
+fn readings_left_out((left_out, outside): (&[LeaveOut], usize), by_user: usize) -> Criterion {
     let excluded = if left_out.is_empty() { "none".to_owned() } else { left_out.len().to_string() };
     let found = if outside > 0 { format!("{excluded}; {outside} {OUTSIDE}") } else { excluded };
     let reasons: Vec<String> = left_out.iter().map(|one| format!("{} ({})", one.place(), one.reason)).collect();
