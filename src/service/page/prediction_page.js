@@ -179,15 +179,15 @@ export async function openPrediction(root, id, signal) {
     const [k, kk] = [columns[`tip${tip}_k_i_mpa_sqrt_m`], columns[`tip${tip}_k_ii_mpa_sqrt_m`]];
     factors.hidden = !k || k.filter(Number.isFinite).length < 3;
     if (factors.hidden) return null;
+    const { delta_k_min_mpa_sqrt_m: least, delta_k_max_mpa_sqrt_m: most } = result?.law ?? {};
     const made = createChart(factorPlace, {
       name: "factors", title: "Stress intensity over crack length", label: `K_I and K_II of tip ${tip} at maximum load over crack length`,
       x: { label: "Crack length a", unit: "mm", format: (value) => fixed(value, 2) },
       y: { label: "K", unit: "MPa√m", format: (value) => significant(value, 4) },
-      note: "At maximum load. Hatched: outside the tested ΔK. Gaps: K not computed.",
+      note: `At maximum load.${least || most ? " Hatched: outside the tested ΔK." : ""} Gaps: K not computed.`,
     });
     signal.addEventListener("abort", () => made.destroy());
     const ratio = columns.delta_k_mpa_sqrt_m[0] / Math.hypot(k[0], kk[0] ?? 0);
-    const { delta_k_min_mpa_sqrt_m: least, delta_k_max_mpa_sqrt_m: most } = result?.law ?? {};
     const share = Number.isFinite(ratio) && ratio <= 1.001 ? ratio : 1;
     made.set([
       least && { id: "below", kind: "outside", name: "below the tested ΔK", y2: [least / share] },
@@ -245,7 +245,7 @@ function howComputed(job, r) {
   const model = r.points > 0 ? `${count(r.points, isNodes ? "node" : "point")}, ${count(r.solves, "solution")}, ${duration(r.wall_s)}` : `hand calculation, ${duration(r.wall_s)}`;
   return element("section", { class: "card", "aria-labelledby": "computed-title" }, element("h2", { id: "computed-title" }, "Method"),
     terms([
-      ["Growth law", [rate || given, paris].filter(Boolean).join(", ") || words(law.source)],
+      ["Growth law", [rate || given, paris].filter(Boolean).join(", ") || (law.source === "inline" ? "constants entered by the user" : words(law.source))],
       range && ["Calibrated", range],
       ["Model", `${sentence(words(r.model?.method))}: ${r.model?.why?.method ?? ""}`],
       ["", model],

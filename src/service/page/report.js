@@ -13,7 +13,7 @@ import { kept } from "./units.js";
 /** Items of one report; all others are proposed for the next. */
 const OF_ONE = ["number", "revision", "revision_reason", "date"];
 /** Test conditions that a laboratory notes above its table. */
-const NOTED = ["orientation", "environment"];
+const NOTED = ["orientation", "environment", "waveform"];
 /** The last item of every report; test conditions follow, which belong to calibrations. */
 const LAST = "approver";
 
