@@ -9,6 +9,7 @@ use std::io::{self, Read, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use super::Marker;
 use perilife_base::error::{Error, Result, input};
@@ -252,13 +253,23 @@ impl Drop for Lock {
     }
 }
 
+/// Time that a lock is waited for, ms: no run ends within it, but a holder that leaves has gone.
+const LEAVING_MS: u32 = 50;
+
 /// The file, and whether the system locks it.
 /// Errors: of the kind [`io::ErrorKind::WouldBlock`] with the words of who has it.
 fn locked(path: &Path, share: Share) -> io::Result<(File, bool)> {
+    let mut waited = 0;
     loop {
         let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
         let locked = if share == Share::Alone { file.try_lock() } else { file.try_lock_shared() };
         if let Err(TryLockError::WouldBlock) = locked {
+            // Who leaves has it alone for a moment, to remove its file.
+            if waited < LEAVING_MS {
+                std::thread::sleep(Duration::from_millis(1));
+                waited += 1;
+                continue;
+            }
             let mut holder = String::new();
             let _ = file.read_to_string(&mut holder);
             let holder = if holder.trim().is_empty() { "an unknown process" } else { holder.trim() };
