@@ -20,7 +20,7 @@ const SLOW: [&str; 2] = ["predict", "slow.toml"];
 fn inputs() -> TempDir {
     let dir = daily::inputs();
     let (plate, _) = PANEL.split_once("[model]").unwrap();
-    let law = "[model]\nspacing_mm = 0.5\n[fatigue]\ndriver = \"bond_strain\"\na = 6450.0\np = 2.86\nhorizon_mm = 3.015\n";
+    let law = "[model]\nspacing_mm = 0.8\n[fatigue]\ndriver = \"bond_strain\"\na = 6450.0\np = 2.86\nhorizon_mm = 3.015\n";
     fs::write(dir.path().join("slow.toml"), format!("{plate}{law}[stop]\ncrack_length_mm = 49.8\n")).unwrap();
     fs::write(dir.path().join("slow_sweep.toml"), daily::SWEEP.replace("panel.toml", "slow.toml")).unwrap();
     let scene = daily::SCENE.replace("spacing_mm = 1.0", "spacing_mm = 0.1");
