@@ -13,7 +13,7 @@ use perilife_growth::case::Case;
 use perilife_growth::case::record::FittedRecord;
 use perilife_growth::predict::Silent;
 use perilife_results::curve::{Row, table};
-use perilife_results::output::{MARKER, OutputFolder, RunKind, write_file};
+use perilife_results::output::{LockedFolder, MARKER, OutputFolder, RunKind, write_file};
 use perilife_results::provenance;
 use perilife_results::provenance::table_of;
 use serde_json::Value;
@@ -42,6 +42,14 @@ fn a_folder_appears_when_it_is_finished_and_replaces_only_its_own() {
 }
 
 /// Files that a run keeps have names that every system takes, each its own whatever the case.
+/// Parts of a sweep come and go: one that leaves has the lock alone while it removes its file, and nobody is refused for that.
+#[test]
+fn parts_that_leave_refuse_nobody() {
+    let dir = tempdir().unwrap();
+    let part = || (0..500).for_each(|_| drop(LockedFolder::join(dir.path()).unwrap()));
+    std::thread::scope(|scope| (0..2).for_each(|_| drop(scope.spawn(part))));
+}
+
 #[test]
 fn kept_files_can_be_unpacked_everywhere() {
     let file = |name: &str| OpenedFile { name: name.to_owned(), path: None, id: None, content: [][..].into() };

@@ -221,8 +221,17 @@ impl Lock {
     }
 
     fn take(path: &Path, share: Share) -> io::Result<Lock> {
-        let (beside, (file, is_real)) = Staging::made(path, |path| fs::remove_file(path), || locked(path, share))?;
-        Ok(Lock { is_real, beside, file })
+        let mut waited = 0;
+        loop {
+            match Staging::made(path, |path| fs::remove_file(path), || locked(path, share)) {
+                // Who leaves has it alone for a moment, to remove its file.
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock && waited < LEAVING_MS => {
+                    std::thread::sleep(Duration::from_millis(1));
+                    waited += 1;
+                }
+                made => return made.map(|(beside, (file, is_real))| Lock { is_real, beside, file }),
+            }
+        }
     }
 
     /// Removes what processes left beside `target` that were killed while they wrote it, and, where the system gives away the lock of
@@ -259,17 +268,10 @@ const LEAVING_MS: u32 = 50;
 /// The file, and whether the system locks it.
 /// Errors: of the kind [`io::ErrorKind::WouldBlock`] with the words of who has it.
 fn locked(path: &Path, share: Share) -> io::Result<(File, bool)> {
-    let mut waited = 0;
     loop {
         let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
         let locked = if share == Share::Alone { file.try_lock() } else { file.try_lock_shared() };
         if let Err(TryLockError::WouldBlock) = locked {
-            // Who leaves has it alone for a moment, to remove its file.
-            if waited < LEAVING_MS {
-                std::thread::sleep(Duration::from_millis(1));
-                waited += 1;
-                continue;
-            }
             let mut holder = String::new();
             let _ = file.read_to_string(&mut holder);
             let holder = if holder.trim().is_empty() { "an unknown process" } else { holder.trim() };

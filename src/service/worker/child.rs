@@ -156,7 +156,9 @@ fn run_task(folder: &Path, task: &Task, from: Option<TaskCheckpoint>, teller: &T
     // The stresses that go with factors are for a folder that was asked for.
     let is_of_factors = matches!(task, Task::Factors { .. });
     let summary = perilife_runner::run(task, from, (!is_of_factors).then_some(folder), teller)?;
-    is_of_factors.then(|| write_json(folder, RESULT_FILE, &summary.result)).transpose()?;
+    if is_of_factors {
+        write_json(folder, RESULT_FILE, &summary.result)?;
+    }
     // A run of cycles that is refused is shown as such.
     let summary = if matches!(task, Task::Prediction { .. }) { summary } else { summary.counted()? };
     // A report of what cannot be read again is no reason to lose the run.
@@ -165,7 +167,8 @@ fn run_task(folder: &Path, task: &Task, from: Option<TaskCheckpoint>, teller: &T
         write_file(&folder.join(REPORT_FILE), paper::html(&source, &Signed::default()).as_bytes())?;
     }
     packed(folder)?;
-    let mut figures = summary.figures; // and what a listing says of the plate
+    let mut figures = summary.figures;
+    // For the list of runs.
     figures["plate"] = Value::from_iter(["specimen", "material", "load"].map(|key| (key, summary.result["plate"][key].clone())));
     Ok(figures)
 }
