@@ -191,10 +191,10 @@ impl Bisection<'_> {
         let (axis, place) = if y.0 < x.0 { (1, y.1) } else { (0, x.1) };
         let first_right = along[axis][place];
         let is_left = |member: &u32| self.is_before(axis, *member, first_right).is_lt();
-        let (left, right): (Vec<_>, Vec<_>) = along.into_iter().map(|members| members.into_iter().partition(is_left)).unzip();
+        let [x, y] = along.map(|members| members.into_iter().partition::<Vec<u32>, _>(is_left));
         let (of_left, of_right) = order.split_at_mut(place);
-        let part = |along: Vec<Vec<u32>>, order| self.plan(along.try_into().unwrap_or_default(), axis, order);
-        let (left, right) = rayon::join(|| part(left, (of_left, start)), || part(right, (of_right, start + place)));
+        let left = || self.plan([x.0, y.0], axis, (of_left, start));
+        let (left, right) = rayon::join(left, || self.plan([x.1, y.1], axis, (of_right, start + place)));
         Plan { members: range, own: Vec::new(), parts: vec![left, right] }
     }
 

@@ -11,6 +11,7 @@ mod limits;
 mod long_use;
 mod named;
 mod page;
+mod page_figures;
 mod page_axe;
 mod page_forms;
 mod queue;

@@ -80,6 +80,12 @@ function large(s) {
 const quantileWords = ({ words: said }) => [said.p05, said.p50, said.p95].map((text) => (Number.isFinite(Number(text ?? NaN)) ? cycles(Math.round(Number(Number(text).toPrecision(4)))) : text ?? "unknown"));
 export const fleetOf = ({ fleet }) => quantileWords(fleet.life_cycles);
 
+/** Figures of a fleet have four digits. */
+export const OF_FLEET = [1, 1, 1];
+
+/** A promise, rounded down to the digits that its band deserves; whole cycles are those that a user gave. */
+export const promised = (value, band) => (Number.isInteger(value) ? cycles(value) : deserved(value, band, Math.floor));
+
 /** Inspections of a fleet in words: {from, interval, left}; null where none were asked for. */
 export function inspectionsOf({ fleet: { inspections: looks }, passes, life_cycles: life }) {
   if (!looks) return null;
@@ -87,8 +93,7 @@ export function inspectionsOf({ fleet: { inspections: looks }, passes, life_cycl
   const every = looks.interval_cycles ?? (p05 === null ? null : p05 / looks.factor);
   return {
     from: sized(looks.detectable_mm, "mm", 4), rule: `5 % remaining life of the fleet / ${looks.factor}`,
-    // Rounded down: an interval is a promise.
-    interval: every === null ? looks.detectable_to_critical_cycles.words.p05 ?? "unknown" : `${cycles(Math.floor(every))} cycles${inPasses(every, passes, life)}`,
+    interval: every === null ? looks.detectable_to_critical_cycles.words.p05 ?? "unknown" : `${promised(every, OF_FLEET)} cycles${inPasses(every, passes, life)}`,
     left: quantileWords(looks.detectable_to_critical_cycles),
   };
 }

@@ -1,11 +1,11 @@
 // Further analyses of a prediction. A result never changes: each is a run of the same input with an option of its own.
 
-import { inPasses, inspectionsOf } from "./answer.js";
+import { inPasses, inspectionsOf, OF_FLEET, promised } from "./answer.js";
 import { getText } from "./api.js";
 import { createChart } from "./chart.js";
 import { button, element, readCsv, section, show, terms } from "./dom.js";
 import { createForm, grid, numberIn } from "./form.js";
-import { bandOf, cycles, deserved, significant, whole } from "./format.js";
+import { bandOf, bandOfError, deserved, significant, whole } from "./format.js";
 import { filesOf, nameOf, pathOf } from "./job.js";
 import { keyOf, loadKeys } from "./keys.js";
 import { loadInto, problemBox } from "./notices.js";
@@ -28,12 +28,12 @@ function leftWords({ remaining_cycles_p05: low, remaining_cycles_p50: middle, re
 const chance = (value) => (value < 1e-3 ? "< 0.001" : significant(value, 2));
 
 /** When the crack is looked for: as the interval of the inspection, rounded down. */
-function inspectionWords(found, { inspection: from, passes, life_cycles: life, fleet, tips = [] }) {
+function inspectionWords(found, { inspection: from, passes, life_cycles: life, error_estimate_percent: error, fleet, tips = [] }) {
   const looks = fleet?.inspections;
-  if (looks) return `first after ${cycles(Math.round(looks.first_inspection_cycles))} cycles, then every ${inspectionsOf({ fleet, passes, life_cycles: life }).interval}`;
+  if (looks) return `first after ${promised(looks.first_inspection_cycles, OF_FLEET)} cycles, then every ${inspectionsOf({ fleet, passes, life_cycles: life }).interval}`;
   const every = found.interval_cycles;
   const band = from?.has_band && [from.remaining_cycles_p05, from.remaining_cycles_p50, from.remaining_cycles_p95];
-  const rounded = band ? deserved(every, band, Math.floor) : cycles(Math.floor(every));
+  const rounded = promised(every, band || bandOfError(error));
   const tip = tips.length > 1 && (from?.tip ?? null) !== null ? ` (tip ${from.tip})` : "";
   return `${found.rows.length}${from ? `, from ${lengthShown(from.crack_length_mm, 2)}${tip}` : ""}, every ${rounded} cycles${inPasses(every, passes, life)}`;
 }

@@ -1,9 +1,9 @@
 // Remaining life from a crack length, and the inspection interval.
 
-import { byError, inPasses, inspectionsOf, lifeShown, quantilesOf } from "./answer.js";
+import { byError, inPasses, inspectionsOf, lifeShown, promised, quantilesOf } from "./answer.js";
 import { getJson } from "./api.js";
 import { debounce, element, show, terms } from "./dom.js";
-import { bandOf, cycles, deserved, fixed, parseNumber } from "./format.js";
+import { bandOf, bandOfError, deserved, fixed, parseNumber } from "./format.js";
 import { pathOf } from "./job.js";
 import { problemBox } from "./notices.js";
 import { inShown, unitShown } from "./units.js";
@@ -84,9 +84,8 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
       show(answer, terms([
         [got.life_is_lower_bound ? "Remaining life ≥" : "Remaining life", value("remaining_cycles", band ? deserved(band[1], band) : byError(got.remaining_cycles, job.summary))],
         ["Band", band ? `median; ${bandOf(band)}` : "no band"],
-        // Rounded down: an interval is a promise.
         ["Inspection interval", element("span", null, value("inspection_interval_cycles",
-          band ? deserved(got.inspection_interval_cycles, band, Math.floor) : cycles(Math.floor(got.inspection_interval_cycles))), inPasses(got.inspection_interval_cycles, passes, life))],
+          promised(got.inspection_interval_cycles, band ?? bandOfError(job.summary?.error_estimate_percent))), inPasses(got.inspection_interval_cycles, passes, life))],
         ["Life used", `${used(got.cycles_at)} of ${lifeShown(job.summary)} cycles`],
       ], "remaining"));
     } catch (error) {
