@@ -9,6 +9,7 @@ use super::basis::Value;
 use super::cells::{Dividers, QuadraturePoint};
 use super::dilatation::{Dilatation, Patch, side, split};
 use super::field::{Discretisation, Local, TipFields, singular};
+use super::fold::Fold;
 use super::front::{FrontalMatrix, lower_product, whole_product};
 use perilife_base::error::Result;
 
@@ -29,8 +30,9 @@ pub struct Scratch {
     numbers: Vec<u32>,
     /// Nodes of the cell in the order of their unknowns in the front, with the number of the first enriched unknown of each.
     nodes: Vec<(u32, u32)>,
-    /// Places in the front of the enriched unknowns.
+    /// Places in the front of the enriched unknowns; where nodes are images, of all.
     enriched: Vec<u32>,
+    has_images: bool,
     /// Gradients of shape functions, a row a point, and the same times the area.
     gradients: [Vec<f64>; 2],
     /// Strains of the unknowns without and with fields, three rows a point, and stresses of the latter times the area.
@@ -67,14 +69,16 @@ impl Scratch {
         Ok(())
     }
 
-    /// Numbers the nodes in reach of any point, and their enriched unknowns.
-    fn number(&mut self, plate: &Discretisation, places: &[u32]) {
+    /// Numbers the nodes in reach of any point, or those that stand for them, and their enriched unknowns.
+    fn number(&mut self, plate: &Discretisation, fold: Option<&Fold>, places: &[u32]) {
         self.nodes.clear();
+        self.has_images = fold.is_some_and(|fold| self.values.iter().any(|value| !fold.is_plain(value.node)));
         for value in &self.values {
-            let number = &mut self.numbers[value.node as usize];
+            let node = fold.map_or(value.node, |fold| fold.node(value.node));
+            let number = &mut self.numbers[node as usize];
             if *number == u32::MAX {
                 *number = 0;
-                self.nodes.push((value.node, 0));
+                self.nodes.push((node, 0));
             }
         }
         self.nodes.sort_unstable_by_key(|node| places[node.0 as usize]);
@@ -82,14 +86,14 @@ impl Scratch {
         for (number, (node, first)) in (0..).zip(&mut self.nodes) {
             self.numbers[*node as usize] = number;
             *first = self.enriched.len() as u32;
-            let place = places[*node as usize] + 2;
-            self.enriched.extend(place..place + 2 * plate.enriched[*node as usize].len() as u32);
+            let (place, plain) = (places[*node as usize], if self.has_images { 0 } else { 2 });
+            self.enriched.extend(place + plain..place + 2 + 2 * plate.enriched[*node as usize].len() as u32);
         }
     }
 
-    fn fill(&mut self, plate: &Discretisation, thickness: f64) {
-        let Scratch { values, ends, fields, numbers, nodes, enriched, gradients, strains, stresses, .. } = self;
-        let (n, m, points, tips) = (2 * nodes.len(), enriched.len(), ends.len(), plate.axes.len());
+    fn fill(&mut self, plate: &Discretisation, fold: Option<&Fold>, thickness: f64) {
+        let Scratch { values, ends, fields, numbers, nodes, enriched, has_images, gradients, strains, stresses, .. } = self;
+        let (n, m, points, tips) = (if *has_images { 0 } else { 2 * nodes.len() }, enriched.len(), ends.len(), plate.axes.len());
         let is_enriched = usize::from(m > 0);
         let [of_points, weighted] = gradients;
         let [of_nodes, of_fields] = strains;
@@ -104,7 +108,21 @@ impl Scratch {
         let mut first_value = 0;
         for (index, &(end, area)) in ends.iter().enumerate() {
             let factor = thickness * area;
-            for value in &values[first_value..end] {
+            let values = &values[std::mem::replace(&mut first_value, end)..end];
+            if let Some(fold) = fold.filter(|_| *has_images) {
+                plate.each_unknown(values, &fields[index * tips..(index + 1) * tips], |node, unknown, (_, gradient)| {
+                    let (place, sign) = fold.unknown(node, unknown);
+                    let number = numbers[fold.node(node) as usize] as usize;
+                    let column = 3 * index * m + (nodes[number].1 + place) as usize;
+                    let strain = [gradient[0][0], gradient[1][1], gradient[0][1] + gradient[1][0]];
+                    for (row, (strain, stress)) in strain.into_iter().zip(elasticity.stress(&gradient)).enumerate() {
+                        of_fields[column + row * m] += sign * strain;
+                        stresses[column + row * m] += sign * factor * stress;
+                    }
+                });
+                continue;
+            }
+            for value in values {
                 let number = numbers[value.node as usize] as usize;
                 let ([x, y], column) = (value.gradient, 2 * number);
                 let place = index * n + column;
@@ -131,7 +149,6 @@ impl Scratch {
                     }
                 }
             }
-            first_value = end;
         }
     }
 }
@@ -153,7 +170,7 @@ pub fn dilatation(plate: &Discretisation, cells: &[(usize, Vec<QuadraturePoint>)
                 // Where nodes do not span the basis, `add_cell` decides.
                 if plate.at_loaded(*leaf, point.at, local) {
                     area += point.area;
-                    plate.each_unknown(local, |node, unknown, (_, [[xx, _], [_, yy]])| {
+                    plate.each_unknown(&local.values, &local.fields, |node, unknown, (_, [[xx, _], [_, yy]])| {
                         let sum = &mut sums[unknown as usize];
                         if *sum == 0.0 {
                             means.push((node, unknown, 0.0));
@@ -172,27 +189,29 @@ pub fn dilatation(plate: &Discretisation, cells: &[(usize, Vec<QuadraturePoint>)
     Some(Dilatation::new(plate.elasticity(), cells.par_iter().map_init(room, of_cell).collect()))
 }
 
-/// Adds the matrix of a cell to a front in which the unknowns of a node begin at `places[node]`.
+/// Adds the matrix of a cell to a front in which the unknowns of a node begin at `places[node]`; of the unknowns that stand for others, of the
+/// nodes that do.
 ///
 /// With `P = Σ ∇Φ ∇Φᵀ dA` of all pairs of gradients that of unknowns without fields is made of its entries; those with fields take all
 /// of `∫ e_aᵀ D e_b dA`.
 /// Errors: nodes in reach of a point do not span the basis.
 pub fn add_cell(
     plate: &Discretisation,
-    thickness: f64,
+    (fold, thickness): (Option<&Fold>, f64),
     (leaf, points): (usize, &[QuadraturePoint]),
     scratch: &mut Scratch,
     places: &[u32],
     front: &mut FrontalMatrix,
 ) -> Result<()> {
     scratch.read(plate, leaf, points)?;
-    scratch.number(plate, places);
-    scratch.fill(plate, thickness);
+    scratch.number(plate, fold, places);
+    scratch.fill(plate, fold, thickness);
     let Scratch {
         ends,
         numbers,
         nodes,
         enriched,
+        has_images,
         gradients: [of_points, weighted],
         strains: [of_nodes, of_fields],
         stresses,
@@ -200,15 +219,17 @@ pub fn add_cell(
         in_front,
         ..
     } = scratch;
-    let (n, m, points) = (2 * nodes.len(), enriched.len(), ends.len());
+    let (n, m, points) = (if *has_images { 0 } else { 2 * nodes.len() }, enriched.len(), ends.len());
     if points == 0 {
         return Ok(());
     }
-    lower_product(of_points, weighted, [points, n], product);
     in_front.clear();
     in_front.extend(nodes.iter().map(|&(node, _)| places[node as usize] as usize));
-    add_nodes(plate, in_front, product, front);
-    if m > 0 {
+    if n > 0 {
+        lower_product(of_points, weighted, [points, n], product);
+        add_nodes(plate, in_front, product, front);
+    }
+    if m > 0 && n > 0 {
         let place = |number: usize| in_front[number / 2] + number % 2;
         whole_product(stresses, of_nodes, [3 * points, m, n], product);
         for column in 0..n {
@@ -222,6 +243,8 @@ pub fn add_cell(
             let (sums, first) = front.column(column as usize);
             (from..n).for_each(|row| sums[place(row) - first] += product[row * m + index]);
         }
+    }
+    if m > 0 {
         lower_product(of_fields, stresses, [3 * points, m], product);
         for (index, &column) in enriched.iter().enumerate() {
             let (sums, first) = front.column(column as usize);

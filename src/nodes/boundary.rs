@@ -44,10 +44,19 @@ impl Square {
         Square { unknowns, v, factor, way: 0.0 }
     }
 
+    /// A spring on one unknown.
+    pub fn spring(unknown: u32, factor: f64) -> Self {
+        Square { unknowns: vec![unknown], v: vec![1.0], factor, way: 0.0 }
+    }
+
     /// `Σ P way` of the force P of the spring, N per m of the displacement of the load, where the unknowns are those of 1 m.
     pub fn reaction(&self, u: &[f64]) -> f64 {
-        let held: f64 = self.unknowns.iter().zip(&self.v).map(|(&unknown, v)| v * u[unknown as usize]).sum();
-        self.factor * self.way * (self.way - held)
+        self.factor * self.way * (self.way - self.moved(u))
+    }
+
+    /// What it holds of a displacement.
+    pub fn moved(&self, u: &[f64]) -> f64 {
+        self.unknowns.iter().zip(&self.v).map(|(&unknown, v)| v * u[unknown as usize]).sum()
     }
 }
 
@@ -57,8 +66,12 @@ pub struct Boundary {
     pub forces: Vec<f64>,
     /// Springs of supports and grips.
     pub held: Vec<Square>,
-    /// Unknowns of grips: displacement and turn of each.
-    pub of_grips: usize,
+    /// Unknowns that hold the plate where nothing else does: one along x, one along y, one against its turn.
+    pub pins: [Option<u32>; 3],
+    /// Their springs.
+    pub spring: f64,
+    /// Middles of grips, m, whose unknowns are displacement and turn of each.
+    pub grips: Vec<Point>,
 }
 
 /// A rigid grip: three unknowns after those of the nodes.
@@ -72,7 +85,8 @@ impl Boundary {
     /// Of a plate with cracks under its loads.
     /// Errors: nodes in reach of a load or support do not span the basis.
     pub fn new(specimen: &Specimen, plate: &Discretisation, far: f64) -> Result<Self> {
-        let mut boundary = Boundary { forces: vec![0.0; plate.unknowns()], ..Boundary::default() };
+        let spring = PIN * plate.elasticity().plane_modulus;
+        let mut boundary = Boundary { forces: vec![0.0; plate.unknowns()], spring, ..Boundary::default() };
         let grips = boundary.grips(specimen, plate)?;
         // What sides that are moved bear is found with their displacement.
         let is_moved = specimen.moved_section().is_some();
@@ -147,7 +161,7 @@ impl Boundary {
         for stretch in ends {
             let (first, middle) = (self.forces.len(), along(stretch[0], stretch[1], 0.5));
             self.forces.extend([0.0; UNKNOWNS_OF_GRIP]);
-            self.of_grips += UNKNOWNS_OF_GRIP;
+            self.grips.push(middle);
             for (at, length) in pieces(plate, stretch) {
                 let arm = at[0] - middle[0];
                 let (mut motions, factor) = (motions(plate, at)?, penalty(specimen, plate, at) * length);
@@ -172,7 +186,7 @@ impl Boundary {
         let first = |node: usize| plate.first[node];
         let way = [(at[b][0] - at[a][0]).abs(), (at[b][1] - at[a][1]).abs()];
         let across = u32::from(way[0] >= way[1]);
-        let mut pinned: Vec<u32> = (0..2).filter(|axis| !held[*axis as usize]).map(|axis| first(a) + axis).collect();
+        self.pins = [0, 1, 2].map(|axis| held.get(axis).is_some_and(|held| !held).then(|| first(a) + axis as u32));
         // A straight side that is held along its normal cannot turn.
         let turns = |support: &Support| match *support {
             Support::Fixed { from, to, x, y, .. } => [x, y][usize::from((to[1] - from[1]).abs() < (to[0] - from[0]).abs())],
@@ -181,10 +195,8 @@ impl Boundary {
             _ => false,
         };
         if !clamped && !supports.iter().any(turns) {
-            pinned.push(first(b) + across);
+            self.pins[2] = Some(first(b) + across);
         }
-        let size = plate.elasticity().plane_modulus;
-        self.held.extend(pinned.into_iter().map(|unknown| Square::of(&[(unknown, [1.0; 2])], AXES[0], size * PIN)));
     }
 }
 

@@ -128,20 +128,20 @@ impl OfCell {
     }
 }
 
-/// Points of integration of every cell with material.
-pub fn quadrature(specimen: &Specimen, plate: &Discretisation) -> Vec<(usize, Vec<QuadraturePoint>)> {
+/// Points of integration of cells, of each that has material, with a share of their area.
+pub fn quadrature(specimen: &Specimen, plate: &Discretisation, cells: &[(usize, f64)]) -> Vec<(usize, Vec<QuadraturePoint>)> {
     let (grid, dividers) = (&plate.grid, Dividers::of(plate));
-    let leaves: Vec<usize> = grid.leaves().collect();
-    let of_leaf = |&leaf: &usize| {
+    let of_leaf = |&(leaf, share): &(usize, f64)| {
         let near = dividers.of_cell(leaf);
-        let points = if near.is_empty() {
+        let mut points = if near.is_empty() {
             if specimen.contains(grid.middle(leaf)) { whole(grid, leaf) } else { Vec::new() }
         } else {
             divided(specimen, grid, leaf, &near)
         };
+        points.iter_mut().for_each(|point| point.area *= share);
         (!points.is_empty()).then_some((leaf, points))
     };
-    leaves.par_iter().filter_map(of_leaf).collect()
+    cells.par_iter().filter_map(of_leaf).collect()
 }
 
 /// Points of a cell that nothing divides.

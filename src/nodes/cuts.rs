@@ -197,20 +197,24 @@ fn crosses(a: Point, b: Point, c: Point, d: Point) -> bool {
     (turn(a, b, c) > 0.0) != (turn(a, b, d) > 0.0) && (turn(c, d, a) > 0.0) != (turn(c, d, b) > 0.0)
 }
 
+/// Share of the farthest corner's distance within which others are as far: a line that is its own image stays one.
+const AS_FAR: f64 = 1e-6;
+
 /// A line without the corners that lie within `tolerance`, m, of the straight line between those that stay (Douglas and Peucker 1973).
 pub fn simplified(points: &[Point], tolerance: f64) -> Vec<Point> {
     let [first, .., last] = points else { return points.to_vec() };
     let away = |k: &usize| distance_to_segment(points[*k], *first, *last);
-    let farthest = (1..points.len() - 1).max_by(|a, b| away(a).total_cmp(&away(b)));
-    match farthest.filter(|k| away(k) > tolerance) {
-        None => vec![*first, *last],
-        Some(k) => {
-            let mut line = simplified(&points[..=k], tolerance);
-            line.pop();
-            line.extend(simplified(&points[k..], tolerance));
-            line
-        }
+    let farthest = (1..points.len() - 1).map(|k| away(&k)).fold(0.0, f64::max);
+    if farthest <= tolerance {
+        return vec![*first, *last];
     }
+    let (mut line, mut from) = (vec![*first], 0);
+    let stay = (1..points.len() - 1).filter(|k| away(k) >= (1.0 - AS_FAR) * farthest);
+    for to in stay.chain([points.len() - 1]) {
+        line.extend_from_slice(&simplified(&points[from..=to], tolerance)[1..]);
+        from = to;
+    }
+    line
 }
 
 /// A line with one more corner beyond its last one, `by` m on.

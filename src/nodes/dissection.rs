@@ -70,7 +70,7 @@ struct Dissection<'a, M> {
 }
 
 impl Factor {
-    /// Of the sum of all members; the unknowns of node i are those from `first[i]` to `first[i + 1]`.
+    /// Of the sum of all members; the unknowns of node i are those from `first[i]` to `first[i + 1]`, of some there may be none.
     /// Errors: [`Error::LossOfStiffness`] where the sum is not positive definite; those of the matrices.
     pub fn of(members: &[Member], first: &[u32], matrices: &impl Matrices) -> Result<Self> {
         let nodes = first.len() - 1;
@@ -87,6 +87,9 @@ impl Factor {
             }
         }
         for (node, span) in (0..).zip(spans) {
+            if span.end == 0 && first[node as usize] == first[node as usize + 1] {
+                continue;
+            }
             if span.end == 0 {
                 return Err(Error::LossOfStiffness);
             }

@@ -101,7 +101,8 @@ impl Discretisation {
             .at
             .iter()
             .map(|&at| {
-                let carries = |axes: &TipAxes| distance(at, axes.at) < ENRICHED_SPACINGS * axes.spacing;
+                // On the limit none does, on both sides of a tip alike.
+                let carries = |axes: &TipAxes| distance(at, axes.at) < (1.0 - 1e-9) * ENRICHED_SPACINGS * axes.spacing;
                 let has_fields = resolution.enrichment == Enrichment::Tip;
                 axes.iter().enumerate().filter(|(_, axes)| has_fields && carries(axes)).map(|(tip, _)| tip as u32).collect()
             })
@@ -245,7 +246,7 @@ impl Discretisation {
             return None;
         }
         let (mut sum, mut slope) = ([0.0; 2], [[0.0; 2]; 2]);
-        self.each_unknown(local, |_, unknown, (field, gradient)| {
+        self.each_unknown(&local.values, &local.fields, |_, unknown, (field, gradient)| {
             let size = u[unknown as usize];
             add(&mut sum, size, &field);
             slope.iter_mut().zip(&gradient).for_each(|(row, gradient)| add(row, size, gradient));
@@ -256,14 +257,20 @@ impl Discretisation {
         Some((sum, slope))
     }
 
-    /// Calls with node, unknown, and its displacement and gradient ∂u_i/∂x_j, for all unknowns at the point that was read last.
-    pub fn each_unknown(&self, local: &Local, mut call: impl FnMut(u32, u32, (Point, [[f64; 2]; 2]))) {
-        for &Value { node, value, gradient } in &local.values {
+    /// Calls with node, unknown, and its displacement and gradient ∂u_i/∂x_j, for all unknowns at a point, of the shape functions and near-tip
+    /// fields there.
+    pub fn each_unknown(
+        &self,
+        values: &[Value],
+        fields: &[Option<TipFields>],
+        mut call: impl FnMut(u32, u32, (Point, [[f64; 2]; 2])),
+    ) {
+        for &Value { node, value, gradient } in values {
             let first = self.first[node as usize];
             call(node, first, ([value, 0.0], [gradient, [0.0; 2]]));
             call(node, first + 1, ([0.0, value], [[0.0; 2], gradient]));
             for (k, &tip) in (0..).zip(&self.enriched[node as usize]) {
-                let Some(fields) = &local.fields[tip as usize] else { continue };
+                let Some(fields) = &fields[tip as usize] else { continue };
                 for (mode, (field, slope)) in (0..).zip(fields) {
                     let slope = [0, 1].map(|i| [0, 1].map(|j| field[i] * gradient[j] + value * slope[i][j]));
                     call(node, first + 2 + 2 * k + mode, (field.map(|u| value * u), slope));

@@ -28,7 +28,9 @@ impl Source {
     }
 
     fn divides(&self, middle: Point, size: f64) -> bool {
-        self.spacing < size * (1.0 - 1e-9) && (distance(middle, self.at) - self.radius).abs() < self.reach * size
+        // What is on a limit is beyond it, on both sides of a source alike.
+        let nearly = size * (1.0 - 1e-9);
+        self.spacing < nearly && (distance(middle, self.at) - self.radius).abs() < self.reach * nearly
     }
 }
 

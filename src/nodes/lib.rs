@@ -21,6 +21,7 @@ mod dilatation;
 mod dissection;
 pub mod factors;
 pub mod field;
+mod fold;
 mod front;
 pub mod grid;
 mod linear;

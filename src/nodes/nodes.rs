@@ -14,6 +14,8 @@ const RIM_SHARE: f64 = 0.4;
 /// Distance of the two nodes that stand for one beside a crack from it, in spacings; nodes nearer than that are doubled. Nodes on one
 /// side alone leave K 2 to 12 % wrong.
 const FLANK_SHARE: f64 = 0.25;
+/// Difference of the distances from two pieces of a crack, over that of its flanks, below which their corner is nearest.
+const ON_CORNER: f64 = 1e-6;
 /// Distance from a tip, in spacings, within which the nearest node becomes that of the tip.
 const TIP_SHARE: f64 = 0.5;
 /// Distance of two nodes on rims or beside a crack, in spacings, within which they are one: where corners of a rim come closer to its mouth than
@@ -73,7 +75,7 @@ impl Nodes {
             let first = usize::from(has_node.get(index) == Some(&false));
             for share in &shares[first..shares.len() - 1] {
                 let at = stretch.at(*share);
-                let spacing = grid.spacing(grid.leaf(at));
+                let spacing = stretch.spacing(grid, *share);
                 // Where the wall of a slot meets the outline both have a node.
                 let is_alone = nodes.at[inside..].iter().all(|other| distance(*other, at) > TWIN_SHARE * spacing);
                 // Slots and holes may cover others' rims, and slots reach beyond the outline.
@@ -110,12 +112,19 @@ impl Nodes {
             let reach = FLANK_SHARE * spacing;
             let is_near = |[a, b]: &[Point; 2]| (0..2).all(|i| at[i] > a[i].min(b[i]) - reach && at[i] < a[i].max(b[i]) + reach);
             let piece = cuts.iter().flat_map(|cut| cut.points.windows(2)).map(|piece| [piece[0], piece[1]]).filter(is_near);
-            let nearest = piece.map(|[a, b]| (distance_to_segment(at, a, b), [a, b])).min_by(|a, b| a.0.total_cmp(&b.0));
-            let Some((_, [a, b])) = nearest.filter(|near| at_tip[k].is_none() && near.0 < reach) else {
+            let near: Vec<(f64, [Point; 2])> = piece.map(|[a, b]| (distance_to_segment(at, a, b), [a, b])).collect();
+            let nearest = near.iter().map(|near| near.0).fold(reach, f64::min);
+            if nearest >= reach || at_tip[k].is_some() {
                 parted.push(at, spacing);
                 continue;
-            };
-            let ([x, y], foot) = (direction(a, b), nearest_of_segment(at, a, b));
+            }
+            // Beside a corner, off the line between its sides.
+            let level: Vec<[Point; 2]> = near.iter().filter(|near| near.0 <= nearest + ON_CORNER * reach).map(|near| near.1).collect();
+            let sum = level.iter().map(|&[a, b]| direction(a, b)).fold([0.0; 2], |[x, y], [u, v]| {
+                let sign = 1.0_f64.copysign(x * u + y * v);
+                [x + sign * u, y + sign * v]
+            });
+            let ([x, y], foot) = (direction([0.0; 2], sum), nearest_of_segment(at, level[0][0], level[0][1]));
             for side in [-reach, reach] {
                 let beside = [foot[0] - side * y, foot[1] + side * x];
                 // At a mouth that is not square to its rim.

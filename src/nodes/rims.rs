@@ -10,6 +10,10 @@ pub const ARC_TURN: f64 = 0.45;
 const SIDES_IN_SPACING: f64 = 4.0;
 /// Sides of a hole at the least.
 const SIDES_LEAST: usize = 32;
+/// Divisions of a circle come in fours: a hole is its own image as a plate may be.
+const QUARTERS: usize = 4;
+/// Share of a stretch by which the spacing is looked at on either side of a place, which may lie on a border of cells.
+const ASIDE: f64 = 1e-9;
 /// Places at which a stretch is asked for its largest spacing.
 const LOOKS: usize = 32;
 
@@ -72,19 +76,24 @@ impl Stretch {
         let looks = first.max(LOOKS);
         let largest = (0..=looks).map(|k| self.spacing(grid, k as f64 / looks as f64)).fold(0.0, f64::max);
         first = first.max((whole / (share_of_spacing * largest) - 1e-6).ceil() as usize);
+        if matches!(self, Stretch::Circle(_)) {
+            first = first.next_multiple_of(QUARTERS);
+        }
         for k in 0..first {
             self.divide(grid, [k, k + 1].map(|k| k as f64 / first as f64), share_of_spacing, &mut shares);
         }
         shares
     }
 
-    fn spacing(&self, grid: &Grid, share: f64) -> f64 {
-        grid.spacing(grid.leaf(self.at(share)))
+    /// Spacing at a share of it, that of the finer cell on a border of two.
+    pub fn spacing(&self, grid: &Grid, share: f64) -> f64 {
+        [share - ASIDE, share + ASIDE].map(|share| grid.spacing(grid.leaf(self.at(share)))).into_iter().fold(f64::INFINITY, f64::min)
     }
 
     fn divide(&self, grid: &Grid, [from, to]: [f64; 2], share_of_spacing: f64, shares: &mut Vec<f64>) {
         let middle = 0.5 * (from + to);
-        let wanted = self.spacing(grid, middle).min(self.spacing(grid, 0.5 * (from + middle)));
+        let wanted = [0.5 * (from + middle), middle, 0.5 * (middle + to)].map(|share| self.spacing(grid, share));
+        let wanted = wanted.into_iter().fold(f64::INFINITY, f64::min);
         if (to - from) * self.length() > 1.5 * share_of_spacing * wanted {
             self.divide(grid, [from, middle], share_of_spacing, shares);
             self.divide(grid, [middle, to], share_of_spacing, shares);
