@@ -217,7 +217,8 @@ pub fn press_cracks(
 ) -> Result<()> {
     for cut in &plate.obstacles.cuts {
         for piece in cut.points.windows(2) {
-            let count = (distance(piece[0], piece[1]) * PIECES_IN_SPACING / plate.grid.spacing(plate.grid.leaf(piece[1]))).ceil();
+            let spacing = plate.grid.finest(piece[0]).min(plate.grid.finest(piece[1]));
+            let count = (distance(piece[0], piece[1]) * PIECES_IN_SPACING / spacing).ceil();
             let [x, y] = direction(piece[0], piece[1]);
             let area = distance(piece[0], piece[1]) / count * specimen.thickness;
             for k in 0..count as usize {
@@ -225,7 +226,7 @@ pub fn press_cracks(
                 let stress = stress(at);
                 // Into the material.
                 for inward in [[-y, x], [y, -x]] {
-                    let step = 1e-6 * plate.grid.spacing(plate.grid.leaf(at));
+                    let step = 1e-6 * plate.grid.finest(at);
                     let beside = [at[0] + step * inward[0], at[1] + step * inward[1]];
                     if specimen.contains(beside) {
                         push_force(forces, plate, beside, across(stress, inward).map(|t| t * area))?;
@@ -241,12 +242,12 @@ pub fn press_cracks(
 const PIN: f64 = 1e-3;
 
 fn penalty(specimen: &Specimen, plate: &Discretisation, at: Point) -> f64 {
-    PENALTY * plate.elasticity().plane_modulus * specimen.thickness / plate.grid.spacing(plate.grid.leaf(at))
+    PENALTY * plate.elasticity().plane_modulus * specimen.thickness / plate.grid.finest(at)
 }
 
 /// A stretch of the outline that is held down to a depth, as parallel stretches as close as the points of one.
 fn layers(plate: &Discretisation, [from, to]: [Point; 2], depth: f64) -> Vec<[Point; 2]> {
-    let spacing = plate.grid.spacing(plate.grid.leaf(along(from, to, 0.5)));
+    let spacing = plate.grid.finest(along(from, to, 0.5));
     let count = (HELD_IN_SPACING * depth / spacing).ceil();
     // The outline runs counter-clockwise: the plate lies on its left.
     let [x, y] = direction(from, to);

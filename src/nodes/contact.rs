@@ -76,7 +76,7 @@ struct Segment {
 impl Segment {
     /// The segment between two points of a crack; `None` where a flank has no material, as beyond a mouth.
     fn new(specimen: &Specimen, plate: &Discretisation, ends: [Point; 2]) -> Option<Self> {
-        let spacing = plate.grid.spacing(plate.grid.leaf(along(ends[0], ends[1], 0.5)));
+        let spacing = plate.grid.finest(along(ends[0], ends[1], 0.5));
         let [x, y] = direction(ends[0], ends[1]);
         let mut terms: Vec<(u32, f64)> = Vec::new();
         for share in GAUSS {
@@ -265,7 +265,7 @@ fn segments(specimen: &Specimen, plate: &Discretisation) -> Vec<Segment> {
             shares.sort_by(f64::total_cmp);
             for pair in shares.windows(2) {
                 let [a, b] = [0, 1].map(|i| along(a, b, pair[i]));
-                if distance(a, b) >= LENGTH_LEAST * plate.grid.spacing(plate.grid.leaf(along(a, b, 0.5))) {
+                if distance(a, b) >= LENGTH_LEAST * plate.grid.finest(along(a, b, 0.5)) {
                     divide(plate, [a, b], &mut ends);
                 }
             }
@@ -276,7 +276,7 @@ fn segments(specimen: &Specimen, plate: &Discretisation) -> Vec<Segment> {
 
 /// Halves a stretch of crack until no part is longer than it may be by the finest spacing at its ends and middle.
 fn divide(plate: &Discretisation, [a, b]: [Point; 2], ends: &mut Vec<[Point; 2]>) {
-    let spacing = |at: f64| plate.grid.spacing(plate.grid.leaf(along(a, b, at)));
+    let spacing = |at: f64| plate.grid.finest(along(a, b, at));
     if distance(a, b) > LENGTH_MOST * [0.1, 0.5, 0.9].into_iter().map(spacing).fold(f64::INFINITY, f64::min) {
         let middle = along(a, b, 0.5);
         divide(plate, [a, middle], ends);

@@ -12,8 +12,10 @@ use super::field::Discretisation;
 use perilife_plate::specimen::geometry::{along, bounding_box, distance};
 use perilife_plate::specimen::{Point, Specimen};
 
-/// Distance of a node, over its spacing, of the ends of a side, over its length, and of a force, over the largest, from their images.
+/// Distance of a node, over its spacing, and of the ends of a side, over its length, from their images.
 const EQUAL: f64 = 1e-6;
+/// Difference of two forces, over the largest, that are equal: those on flanks are read a millionth of a spacing off the crack.
+const EQUAL_FORCE: f64 = 1e-5;
 
 /// A map of a plate on itself: signs of the distances from its middle.
 #[derive(Debug, Clone, Copy)]
@@ -67,7 +69,13 @@ pub struct Fold {
 
 impl Fold {
     /// Of a plate whose nodes' unknowns, and those of its grips after them, begin at `first`; `None` of one that is not its own image.
-    pub fn of(specimen: &Specimen, plate: &Discretisation, boundary: &Boundary, forces: [&[f64]; 2], first: &[u32]) -> Option<Fold> {
+    pub fn of(
+        specimen: &Specimen,
+        plate: &Discretisation,
+        boundary: &Boundary,
+        forces: [&[f64]; 2],
+        first: &[u32],
+    ) -> Option<Fold> {
         let [low, high] = bounding_box(&specimen.outline);
         let mut of = Unknowns { plate, at: plate.nodes.at.clone(), equal: Vec::new(), first };
         of.equal.extend(plate.nodes.spacing.iter().map(|spacing| EQUAL * spacing));
@@ -107,7 +115,7 @@ impl Fold {
         orbit.push(own);
         orbit.sort_unstable();
         orbit.dedup();
-        (orbit[0] == own).then_some(orbit.len() as f64 / self.copies())
+        (orbit[0] == own).then_some(orbit.len() as f64 / self.parts() as f64)
     }
 
     fn number(&mut self, of: &Unknowns, images: &[Image]) -> Option<()> {
@@ -142,7 +150,7 @@ impl Fold {
     fn hold(&mut self, boundary: &Boundary) {
         let of_support = |square: &Square| {
             let (unknowns, v) = self.row(square.unknowns.iter().copied().zip(square.v.iter().copied())).into_iter().unzip();
-            Square { unknowns, v, factor: square.factor / self.copies(), way: square.way }
+            Square { unknowns, v, factor: square.factor / self.parts() as f64, way: square.way }
         };
         let mut held: Vec<Square> = boundary.held.iter().map(of_support).filter(|square| !square.unknowns.is_empty()).collect();
         let pinned = match self.flips[..] {
@@ -159,8 +167,8 @@ impl Fold {
     }
 
     /// Parts of the plate.
-    fn copies(&self) -> f64 {
-        (self.flips.len() + 1) as f64
+    pub fn parts(&self) -> usize {
+        self.flips.len() + 1
     }
 
     /// The node that stands for a node.
@@ -194,7 +202,7 @@ impl Fold {
     pub fn forces(&self, forces: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0; self.first[self.first.len() - 1] as usize];
         for (&(of, sign), force) in self.unknowns.iter().zip(forces) {
-            sums[of as usize] += sign * force / self.copies();
+            sums[of as usize] += sign * force / self.parts() as f64;
         }
         sums
     }
@@ -211,18 +219,17 @@ impl Fold {
         Some((0..segments.len()).map(share).collect())
     }
 
-    /// The images of a segment but for itself.
-    pub fn images(&self, [a, b]: [Point; 2]) -> impl Iterator<Item = [Point; 2]> {
-        let is_other = move |ends: &[Point; 2]| {
-            let between = |ends: &[Point; 2]| along(ends[0], ends[1], 0.5);
-            distance(between(&[a, b]), between(ends)) > EQUAL * distance(a, b)
-        };
-        self.flips.iter().map(move |flip| [flip.image(a), flip.image(b)]).filter(is_other)
-    }
-
-    /// What the plate has of something that a part has so much of.
-    pub fn of_all(&self, of_part: f64) -> f64 {
-        self.copies() * of_part
+    /// A segment and its images.
+    pub fn orbit(&self, [a, b]: [Point; 2]) -> Vec<[Point; 2]> {
+        let mut orbit = vec![[a, b]];
+        for flip in &self.flips {
+            let (image, equal) = ([flip.image(a), flip.image(b)], EQUAL * distance(a, b));
+            let is_new = |known: &[Point; 2]| distance(along(known[0], known[1], 0.5), along(image[0], image[1], 0.5)) > equal;
+            if orbit.iter().all(is_new) {
+                orbit.push(image);
+            }
+        }
+        orbit
     }
 }
 
@@ -291,7 +298,7 @@ impl<'a> Image<'a> {
 
     fn is_image(&self, forces: &[f64], image: &[f64]) -> bool {
         let largest = forces.iter().fold(0.0_f64, |largest, force| largest.max(force.abs()));
-        self.each().all(|(unknown, other, sign)| (image[other] - sign * forces[unknown]).abs() <= EQUAL * largest)
+        self.each().all(|(unknown, other, sign)| (image[other] - sign * forces[unknown]).abs() <= EQUAL_FORCE * largest)
     }
 
     /// Every unknown, its image and the sign there.

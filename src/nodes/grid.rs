@@ -9,6 +9,9 @@ use perilife_plate::specimen::geometry::distance;
 /// Levels at the most: kinks of a thousandth of the far spacing.
 pub const LEVELS_MAX: u32 = 14;
 
+/// Distance from a border of cells that is none, in sizes of the largest.
+const ON_BORDER: f64 = 1e-9;
+
 /// A place that asks for a spacing: a point, or a circle of `radius` around it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source {
@@ -140,6 +143,13 @@ impl Grid {
             cell = children as usize + usize::from(at[0] >= middle[0]) + 2 * usize::from(at[1] >= middle[1]);
         }
         cell
+    }
+
+    /// Spacing at a point, that of the finest leaf on a border of some: the same at its image in a plate that is its own.
+    pub fn finest(&self, at: Point) -> f64 {
+        let beside = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
+        let at = |signs: [f64; 2]| [0, 1].map(|i| at[i] + signs[i] * ON_BORDER * self.size[i]);
+        beside.map(|signs| self.spacing(self.leaf(at(signs)))).into_iter().fold(f64::INFINITY, f64::min)
     }
 
     /// Calls `visit` with every leaf that meets the box from `low` to `high`, m.

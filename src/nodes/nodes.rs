@@ -119,7 +119,8 @@ impl Nodes {
                 continue;
             }
             // Beside a corner, off the line between its sides.
-            let level: Vec<[Point; 2]> = near.iter().filter(|near| near.0 <= nearest + ON_CORNER * reach).map(|near| near.1).collect();
+            let level: Vec<[Point; 2]> =
+                near.iter().filter(|near| near.0 <= nearest + ON_CORNER * reach).map(|near| near.1).collect();
             let sum = level.iter().map(|&[a, b]| direction(a, b)).fold([0.0; 2], |[x, y], [u, v]| {
                 let sign = 1.0_f64.copysign(x * u + y * v);
                 [x + sign * u, y + sign * v]

@@ -152,7 +152,7 @@ fn on_hole(plate: &Discretisation, hole: &Hole) -> Vec<BoundaryPoint> {
         let angle = -std::f64::consts::TAU * k as f64 / PLACES_ON_HOLE as f64;
         let (sin, cos) = angle.sin_cos();
         let at = [hole.centre[0] + hole.radius * cos, hole.centre[1] + hole.radius * sin];
-        let spacing = plate.grid.spacing(plate.grid.leaf(at));
+        let spacing = plate.grid.finest(at);
         let half_window = half_window(spacing, hole.radius);
         BoundaryPoint { at, tangent: [sin, -cos], way: -angle * hole.radius, spacing, half_window }
     };
@@ -162,7 +162,7 @@ fn on_hole(plate: &Discretisation, hole: &Hole) -> Vec<BoundaryPoint> {
 /// Places on a straight side; the material is on its left. `way` is that of its first end, `radius` that of the arc that it is a side of, m.
 fn on_side(plate: &Discretisation, a: Point, b: Point, way: f64, radius: f64) -> Vec<BoundaryPoint> {
     let grid = &plate.grid;
-    let spacing_at = |at: Point| grid.spacing(grid.leaf(at));
+    let spacing_at = |at: Point| grid.finest(at);
     let least = [0.0, 0.5, 1.0].map(|share| spacing_at(along(a, b, share))).into_iter().fold(f64::INFINITY, f64::min);
     let count = (PLACES_IN_SPACING * distance(a, b) / least).ceil().clamp(1.0, PLACES_ON_SIDE) as usize;
     let place = |k: usize| {

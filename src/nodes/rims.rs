@@ -12,8 +12,6 @@ const SIDES_IN_SPACING: f64 = 4.0;
 const SIDES_LEAST: usize = 32;
 /// Divisions of a circle come in fours: a hole is its own image as a plate may be.
 const QUARTERS: usize = 4;
-/// Share of a stretch by which the spacing is looked at on either side of a place, which may lie on a border of cells.
-const ASIDE: f64 = 1e-9;
 /// Places at which a stretch is asked for its largest spacing.
 const LOOKS: usize = 32;
 
@@ -87,7 +85,7 @@ impl Stretch {
 
     /// Spacing at a share of it, that of the finer cell on a border of two.
     pub fn spacing(&self, grid: &Grid, share: f64) -> f64 {
-        [share - ASIDE, share + ASIDE].map(|share| grid.spacing(grid.leaf(self.at(share)))).into_iter().fold(f64::INFINITY, f64::min)
+        grid.finest(self.at(share))
     }
 
     fn divide(&self, grid: &Grid, [from, to]: [f64; 2], share_of_spacing: f64, shares: &mut Vec<f64>) {
@@ -143,7 +141,7 @@ pub fn well_apart(outline: &[Point], grid: &Grid, share: f64) -> Vec<bool> {
     for k in first + 1..first + count {
         way += distance(corner(k - 1), corner(k));
         let to_sharp = if is_sharp(k + 1) { distance(corner(k), corner(k + 1)) } else { f64::INFINITY };
-        if !is_sharp(k) && way.min(to_sharp) < share * grid.spacing(grid.leaf(corner(k))) {
+        if !is_sharp(k) && way.min(to_sharp) < share * grid.finest(corner(k)) {
             kept[k % count] = false;
         } else {
             way = 0.0;

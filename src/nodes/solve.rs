@@ -62,6 +62,8 @@ pub struct Solution {
     pub lower: Vec<Loaded>,
     /// Area of the points of integration, m².
     pub area: f64,
+    /// Parts of the plate of which one was solved for: one of a plate that is not its own image.
+    pub parts: usize,
 }
 
 /// The matrices of a plate: those of cells, then those of supports.
@@ -211,8 +213,9 @@ fn solve_part(
     } else {
         Vec::new()
     };
-    let area = cells.iter().flat_map(|(_, points)| points).map(|point| point.area).sum();
-    Ok(Some(Solution { whole, lower, area: fold.map_or(area, |fold| fold.of_all(area)) }))
+    let area: f64 = cells.iter().flat_map(|(_, points)| points).map(|point| point.area).sum();
+    let parts = fold.map_or(1, Fold::parts);
+    Ok(Some(Solution { whole, lower, area: parts as f64 * area, parts }))
 }
 
 /// Turns in which pins and flanks settle on each other at the most, and the change of the forces of flanks, over the largest, that is none.
@@ -283,8 +286,9 @@ impl Balance<'_> {
         }
         let mut pressed = contact.map_or_else(Vec::new, |contact| contact.pressed);
         if let Some(fold) = fold {
-            let images = |own: &Pressed| fold.images(own.ends).map(|ends| Pressed { ends, ..*own }).collect::<Vec<_>>();
-            pressed = pressed.iter().flat_map(|own| std::iter::once(*own).chain(images(own))).collect();
+            let images =
+                |own: &Pressed| fold.orbit(own.ends).into_iter().map(|ends| Pressed { ends, ..*own }).collect::<Vec<_>>();
+            pressed = pressed.iter().flat_map(images).collect();
         }
         let work = match section {
             None => others.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>() + pins.as_ref().map_or(0.0, |pins| pins.work),

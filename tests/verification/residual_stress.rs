@@ -246,7 +246,8 @@ fn bearing_and_bypass() {
     let both = k(&format!("stress_max_mpa = 100\n{edges}\n{}", pin(1.5)));
     let bypass = k(&format!("stress_max_mpa = 80\n{edges}"));
     let bearing = k(&format!("stress_max_mpa = 20\n{edges}\n{}", pin(7.5)));
-    assert!((both - bypass - bearing).abs() < 1e-6 * both, "{both}, {bypass}, {bearing}");
+    // The bypass alone is solved by half of the plate, the others whole, where points level with a tip see round it on one side.
+    assert!((both - bypass - bearing).abs() < 1e-5 * both, "{both}, {bypass}, {bearing}");
     let refused = [
         (format!("{edges}\npins = [{{ hole = 0, direction = [0, -1] }}]"), "loading.pins[0].bearing_ratio"),
         (format!("{edges}\npins = [{{ hole = 0, direction = [0, -1], share = 1 }}]"), "loading.pins[0].share"),
