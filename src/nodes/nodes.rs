@@ -16,6 +16,8 @@ const RIM_SHARE: f64 = 0.4;
 const FLANK_SHARE: f64 = 0.25;
 /// Difference of the distances from two pieces of a crack, over that of its flanks, below which their corner is nearest.
 const ON_CORNER: f64 = 1e-6;
+/// Distance from a limit, over it, within which a node is on it, as its image is.
+const ON_LIMIT: f64 = 1e-9;
 /// Distance from a tip, in spacings, within which the nearest node becomes that of the tip.
 const TIP_SHARE: f64 = 0.5;
 /// Distance of two nodes on rims or beside a crack, in spacings, within which they are one: where corners of a rim come closer to its mouth than
@@ -49,7 +51,7 @@ impl Nodes {
                 let beside = near_sides.get(&leaf).is_some_and(|near| {
                     near.iter().any(|&side| {
                         let [a, b] = sides[side as usize];
-                        distance_to_segment(at, a, b) < RIM_SHARE * spacing
+                        distance_to_segment(at, a, b) < (1.0 - ON_LIMIT) * RIM_SHARE * spacing
                     })
                 });
                 let entry = corners.entry(corner).or_insert_with(|| {
@@ -101,7 +103,7 @@ impl Nodes {
         for (tip, axes) in axes.iter().enumerate() {
             let away = |k: &usize| distance(self.at[*k], axes.at);
             let nearest = (0..self.at.len()).filter(|k| at_tip[*k].is_none()).min_by(|a, b| away(a).total_cmp(&away(b)));
-            if let Some(nearest) = nearest.filter(|k| away(k) < TIP_SHARE * self.spacing[*k]) {
+            if let Some(nearest) = nearest.filter(|k| away(k) < (1.0 - ON_LIMIT) * TIP_SHARE * self.spacing[*k]) {
                 self.at[nearest] = axes.at;
                 at_tip[nearest] = Some(tip);
             }
@@ -114,7 +116,7 @@ impl Nodes {
             let piece = cuts.iter().flat_map(|cut| cut.points.windows(2)).map(|piece| [piece[0], piece[1]]).filter(is_near);
             let near: Vec<(f64, [Point; 2])> = piece.map(|[a, b]| (distance_to_segment(at, a, b), [a, b])).collect();
             let nearest = near.iter().map(|near| near.0).fold(reach, f64::min);
-            if nearest >= reach || at_tip[k].is_some() {
+            if nearest >= (1.0 - ON_LIMIT) * reach || at_tip[k].is_some() {
                 parted.push(at, spacing);
                 continue;
             }
@@ -125,12 +127,14 @@ impl Nodes {
                 let sign = 1.0_f64.copysign(x * u + y * v);
                 [x + sign * u, y + sign * v]
             });
-            let ([x, y], foot) = (direction([0.0; 2], sum), nearest_of_segment(at, level[0][0], level[0][1]));
+            let [x, y] = direction([0.0; 2], sum);
+            let feet = level.iter().map(|&[a, b]| nearest_of_segment(at, a, b));
+            let foot = feet.fold([0.0; 2], |sum, foot| [0, 1].map(|i| sum[i] + foot[i] / level.len() as f64));
             for side in [-reach, reach] {
                 let beside = [foot[0] - side * y, foot[1] + side * x];
                 // At a mouth that is not square to its rim.
                 let moved = || nearest_on_rim(specimen, [at[0] - side * y, at[1] + side * x]);
-                let flank = if specimen.contains(beside) { beside } else { moved() };
+                let flank = if specimen.has_point_at(beside, ON_LIMIT * spacing) { beside } else { moved() };
                 if flanks.iter().all(|other| distance(*other, flank) > TWIN_SHARE * spacing) {
                     flanks.push(flank);
                     parted.push(flank, spacing);

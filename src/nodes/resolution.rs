@@ -144,7 +144,8 @@ impl Resolution {
             .map(|(a, b)| [a, b])
             .collect();
         for stretch in &rims {
-            let count = (2.0 * stretch.length() / self.far).ceil().clamp(2.0, 400.0) as usize;
+            // Around a hole in pairs, since half a turn of a plate may leave it as it is.
+            let count = ((2.0 * stretch.length() / self.far).ceil().clamp(2.0, 400.0) as usize).next_multiple_of(2);
             for k in 0..count {
                 let share = (k as f64 + 0.5) / count as f64;
                 let (from, [x, y]) = (stretch.at(share), stretch.inward(share));

@@ -17,6 +17,9 @@ const CURVATURE_SHARE_MOST: f64 = 0.02;
 /// Growth of a tip over that of the fastest, at the most, where rates are extrapolated.
 const SHARE_MOST: f64 = 1.5;
 
+/// Difference of the rates of two tips, over the rate, and of what they are short of, over the step, within which they are twins.
+const TWIN: f64 = 1e-9;
+
 impl StepScales {
     /// By how much longer the step of a slow tip may be than its surroundings allow, the fastest growing at `fastest`, m/cycle: a tip in the
     /// shadow of another crack hardly counts, and would halve the steps of all again and again.
@@ -42,10 +45,14 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let is_last = limits.iter().any(|(most, is_last)| *is_last && *most <= limit * (1.0 + 1e-9));
         let least = self.scales.step.bounds[0].min(self.scales.step.first);
         let step = if is_last { limit } else { limit.min(self.state.step.max(least)) };
-        // Cycles are those of the lead's growth: it makes up for nothing.
+        // Cycles are those of the lead's growth: it makes up for nothing, and neither does its twin.
+        let leads = |tip: &Tip| {
+            let is_near = |a: f64, b: f64, of: f64| (a - b).abs() <= TWIN * of;
+            is_near(tip.rate, lead.rate, lead.rate) && is_near(tip.arrears, lead.arrears, step)
+        };
         let of_tip = |(index, tip): (usize, &Tip)| {
             let share = tip.share(lead, step, self.scales.by_root).min(SHARE_MOST);
-            let arrears = if index == fastest { 0.0 } else { tip.arrears };
+            let arrears = if index == fastest || leads(tip) { 0.0 } else { tip.arrears };
             if tip.is_growing() { (step * share + arrears).max(0.0) } else { 0.0 }
         };
         let mut lengths: Vec<f64> = self.state.tips.iter().enumerate().map(of_tip).collect();
