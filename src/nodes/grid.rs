@@ -145,11 +145,21 @@ impl Grid {
         cell
     }
 
-    /// Spacing at a point, that of the finest leaf on a border of some: the same at its image in a plate that is its own.
+    /// Spacing at a point, on a border that of the finest leaf there: the same at its image in a plate that is its own.
     pub fn finest(&self, at: Point) -> f64 {
+        self.around(at).into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    /// The same of the coarsest leaf.
+    pub fn coarsest(&self, at: Point) -> f64 {
+        self.around(at).into_iter().fold(0.0, f64::max)
+    }
+
+    /// Spacings of the leaves that meet at a point.
+    fn around(&self, at: Point) -> [f64; 4] {
         let beside = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
         let at = |signs: [f64; 2]| [0, 1].map(|i| at[i] + signs[i] * ON_BORDER * self.size[i]);
-        beside.map(|signs| self.spacing(self.leaf(at(signs)))).into_iter().fold(f64::INFINITY, f64::min)
+        beside.map(|signs| self.spacing(self.leaf(at(signs))))
     }
 
     /// Calls `visit` with every leaf that meets the box from `low` to `high`, m.

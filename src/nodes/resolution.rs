@@ -123,7 +123,7 @@ impl Resolution {
         if let Some(finest) = finest.filter(|_| grid.len() > CELLS_MOST) {
             return Err(too_narrow(finest));
         }
-        let at_tip = |tip: &Tip| grid.finest(lines[tip.end.line].end(tip.end.at_last));
+        let at_tip = |tip: &Tip| grid.coarsest(lines[tip.end.line].end(tip.end.at_last));
         let spacings = tips.iter().map(at_tip).collect();
         Ok((grid, spacings))
     }

@@ -6,6 +6,7 @@ use perilife_base::input::Folder;
 use perilife_growth::case::Case;
 use perilife_growth::predict::tip_factors::{StressIntensityMethod, stress_intensity};
 use perilife_growth::predict::{Prediction, Silent, predict};
+use perilife_growth::record::TipRecord;
 use perilife_nodes::basis::{BasisKind, Enrichment, Value};
 use perilife_nodes::crack::{Tip, TipAxes};
 use perilife_nodes::factors::{TipFactors, integral, read};
@@ -291,6 +292,26 @@ fn a_part_of_a_symmetric_plate_stands_for_it() {
             assert!((pressure(of_part) - pressure(of_whole)).abs() <= 1e-3 * pressure(of_whole), "{name}");
         }
         assert_eq!(!part.1.whole.pressed.is_empty(), is_in_contact, "{name}");
+    }
+}
+
+/// Cracks that are images of each other by half a turn stay so to the end, where they curve, take turns in leading and meet, at every fineness: one
+/// that gets ahead would stay there, since the longer crack grows faster.
+#[test]
+fn images_grow_as_images() {
+    let two = &[[[-20.0, -4.0], [-8.0, -4.0]], [[8.0, 4.0], [20.0, 4.0]]];
+    let offset = &[[[-40.0, 5.0], [-28.0, 5.0]], [[28.0, -5.0], [40.0, -5.0]]];
+    let plates = [("two cracks", cracked_plate(100.0, 200.0, two)), ("from both edges", cracked_plate(80.0, 160.0, offset))];
+    for (name, text) in plates {
+        for percent in [5, 1] {
+            let run = predict(&case(&text, &format!("{METHOD} model.tolerance_percent={percent}")).unwrap(), &Silent).unwrap();
+            for tips in run.curve.iter().map(|row| &row.tips) {
+                let pairs = tips.iter().zip(tips.iter().rev());
+                let off =
+                    |(a, b): (&TipRecord, &TipRecord)| (0..2).map(|i| (a.position[i] + b.position[i]).abs()).fold(0.0, f64::max);
+                assert!(pairs.map(off).fold(0.0, f64::max) < 1e-9, "{name} at {percent} %: {tips:?}");
+            }
+        }
     }
 }
 
