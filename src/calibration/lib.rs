@@ -25,6 +25,7 @@ pub mod outliers;
 pub mod paris;
 pub mod population;
 pub mod power_law;
+pub mod preamble;
 pub mod rates;
 pub mod record;
 pub mod readings;

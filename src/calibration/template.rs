@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use crate::preamble::{Preamble, StatedMaterial};
 use perilife_base::error::{Error, InputError, Result, fail_if};
 use perilife_base::table::names::Role;
-use perilife_base::units::{MM, round_off, shown::length_given};
-use perilife_measured::{Import, SAME_LOAD, Survey, said_above, survey};
-use perilife_plate::material::library::names;
+use perilife_base::units::{MM, round_off};
+use perilife_measured::{Import, SAME_LOAD, Survey, survey};
 use perilife_plate::specimen::SpecimenKind;
 
 /// Refuses a table of readings that is given in place of a calibration file.
@@ -48,65 +48,34 @@ fn lines(name: &str, found: &Survey) -> String {
         values.all(|value| (value - first).abs() <= SAME_LOAD * first).then_some(first / MM)
     };
     let is_central = !curves.is_empty() && curves.iter().all(|curve| curve.source.is_tip_to_tip);
-    let of_kind = if is_central { Some(SpecimenKind::MiddleTension) } else { kind_above(&found.above) };
-    let kind = of_kind.map_or_else(|| "<...> # perilife list specimen.kind".to_owned(), |kind| format!("{:?}", kind.name()));
-    let tension = if of_kind == Some(SpecimenKind::CompactTension) { "" } else { "length_mm = <...> # of tension specimens\n" };
-    let above = |labels: &[&str], of: fn(&str) -> Option<f64>| {
-        let values: Vec<f64> = said_above(&found.above, labels).iter().filter_map(|value| of(value)).collect();
-        values.first().copied().filter(|first| values.iter().all(|value| value == first))
-    };
-    let material = said_above(&found.above, &["material", "werkstoff", "alloy", "legierung"]).into_iter().next();
-    let alloy = match material {
-        Some(own) if names().contains(&own.to_lowercase()) => format!("{:?}", own.to_lowercase()),
-        Some(own) => format!("<...> # Material in the file: {own}; perilife list material.name"),
-        None => "<...> # perilife list material.name".to_owned(),
+    let said = Preamble::of(found);
+    let of_kind = if is_central { Some(SpecimenKind::MiddleTension.name()) } else { said.kind };
+    let kind = of_kind.map_or_else(|| "<...> # perilife list specimen.kind".to_owned(), |kind| format!("{kind:?}"));
+    let tension =
+        if of_kind == Some(SpecimenKind::CompactTension.name()) { "" } else { "length_mm = <...> # of tension specimens\n" };
+    let open = "<...> # perilife list material.name";
+    let alloy = match said.material {
+        Some(StatedMaterial { name: Some(name), orientation: None, .. }) => format!("{name:?}"),
+        Some(StatedMaterial { name: Some(name), orientation: Some(own), .. }) => {
+            format!("{name:?} # no record of orientation {own}")
+        }
+        Some(own) => open.replace("# ", &format!("# Material in the file: {}; ", own.stated)),
+        None => open.to_owned(),
     };
     let first = curves.iter().filter_map(|curve| curve.crack_length.first()).copied().reduce(f64::min);
     let load = found.measured.load();
-    let ratio = above(&["stress ratio", "load ratio", "force ratio", "r-ratio", "spannungsverhältnis", "r"], ratio_of);
     let of_load = |key: &str| {
-        let said = load.get(key).copied().or(ratio.filter(|_| key == "stress_ratio"));
-        format!("{key} = {}", number(said))
+        let value = load.get(key).copied().or(said.stress_ratio.filter(|_| key == "stress_ratio"));
+        format!("{key} = {}", number(value))
     };
     let maximum = load.keys().find(|key| **key != "stress_ratio").unwrap_or(&"force_max_kn");
     format!(
         "[measured]\nfiles = [{name:?}]\n{columns}\n[specimen]\nkind = {kind}\nwidth_mm = {}\n{tension}\
          thickness_mm = {}\ncrack_length_mm = {} # first reading\n[material]\nname = {alloy}\n[loading]\n{}\n{}",
-        number(stated(Role::Width).or_else(|| above(&["width", "breite", "w"], millimetres))),
-        number(stated(Role::Thickness).or_else(|| above(&["thickness", "dicke", "b"], millimetres))),
+        number(stated(Role::Width).or(said.width_mm)),
+        number(stated(Role::Thickness).or(said.thickness_mm)),
         number(first.map(|length| length / MM)),
         of_load(maximum),
         of_load("stress_ratio"),
     )
-}
-
-/// With a decimal point; `None` with a comma that may be one between thousands.
-fn certain(text: &str) -> Option<String> {
-    let digits = text.split_once(',').map_or(0, |(_, behind)| behind.bytes().take_while(u8::is_ascii_digit).count());
-    (digits != 3).then(|| text.replace(',', "."))
-}
-
-/// A stress ratio; a length by the same letter has a unit.
-fn ratio_of(text: &str) -> Option<f64> {
-    certain(text)?.parse().ok().filter(|ratio| *ratio < 1.0)
-}
-
-/// A length with its unit, mm.
-fn millimetres(text: &str) -> Option<f64> {
-    let text = certain(text).filter(|text| ["mm", "in", "inch"].iter().any(|unit| text.ends_with(unit)))?;
-    length_given(&text).map(|length| length / MM).filter(|length| *length > 0.0)
-}
-
-/// The kind of specimen whose designation or name is above a table; `None` where there are several.
-fn kind_above(lines: &[Vec<String>]) -> Option<SpecimenKind> {
-    let is_said = |kind: &SpecimenKind| {
-        let designation = kind.meaning().split([' ', ',', ';']).find(|word| word.ends_with(')') && word.contains('('));
-        let names = |field: &String| {
-            field.to_lowercase().contains(&kind.name().replace('_', " "))
-                || designation.is_some_and(|own| field.split([' ', ',', ':', '=']).any(|word| word == own))
-        };
-        lines.iter().flatten().any(names)
-    };
-    let mut said = SpecimenKind::all().filter(is_said);
-    said.next().filter(|_| said.next().is_none())
 }

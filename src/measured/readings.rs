@@ -7,7 +7,7 @@ use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, Source, Stated,
 use perilife_base::error::{Error, Result, fail_if};
 use perilife_base::linear_fit::line;
 use perilife_base::table::Decimal;
-use perilife_base::table::names::{Column, Role};
+use perilife_base::table::names::{Column, Role, is_unit_or_blank};
 use perilife_base::table::quantities::number_at;
 use perilife_base::table::{Fault, Row, Table, whole_file};
 use perilife_base::units::MM;
@@ -55,8 +55,9 @@ pub(super) fn curves_of(table: &Table, layout: &Layout, of_plate: bool, fate: Fa
 }
 
 /// Crack plane orientations after ASTM E1823; labels of what is noted, the longer ones first; words that only an environment has.
-const ORIENTATIONS: [&str; 6] = ["L-T", "T-L", "L-S", "S-L", "S-T", "T-S"];
-const OF_ORIENTATION: [&str; 4] = ["crack plane orientation", "orientation", "orientierung", "rissorientierung"];
+const ORIENTATIONS: [&str; 12] = ["L-T", "T-L", "L-S", "S-L", "S-T", "T-S", "C-R", "R-C", "C-L", "L-C", "R-L", "L-R"];
+const OF_ORIENTATION: [&str; 7] =
+    ["crack plane orientation", "crack plane", "orientation", "orientierung", "rissorientierung", "rissebene", "probenlage"];
 const OF_WAVEFORM: [&str; 6] = ["waveform", "wellenform", "test frequency", "frequency", "prüffrequenz", "frequenz"];
 const OF_ENVIRONMENT: [&str; 9] = [
     "test environment", "environment", "test temperature", "temperature", "atmosphere", "umgebung", "prüftemperatur",
@@ -67,29 +68,32 @@ const ENVIRONMENTS: [&str; 12] =
 
 /// Fields of the lines above a table.
 pub(super) fn fields(table: &Table) -> Vec<Vec<String>> {
-    let trimmed = |part: &str| part.trim_matches(|c: char| c.is_whitespace() || "#%*\"".contains(c)).to_owned();
+    let trimmed = |part: &str| part.trim_matches(|c: char| c.is_whitespace() || "#%*".contains(c)).to_owned();
     let parts = |line: &str| line.split(['|', ';', '\t']).flat_map(|part| part.split(", ")).map(trimmed).collect();
-    table.preamble.iter().map(|(_, line)| parts(line)).collect()
+    table.preamble.iter().map(|(_, line)| parts(&line.replace('"', ""))).collect()
 }
 
-/// What a field says behind one of these labels, perhaps with its unit in brackets, and whether the value is the next field.
-fn labelled(line: &[String], place: usize, labels: &[&str]) -> Option<(String, bool)> {
+/// What a field says behind one of these labels, or the fields behind it, perhaps with a unit in brackets or a field.
+fn labelled(line: &[String], place: usize, labels: &[&str]) -> Option<String> {
     let of = |label: &&str| Some((line[place].get(..label.len())?, line[place].get(label.len()..)?));
     let is_label =
         |own: &&str| of(own).is_some_and(|(a, b)| a.eq_ignore_ascii_case(own) && !b.starts_with(char::is_alphanumeric));
     let rest = of(labels.iter().find(|own| is_label(own))?)?.1.trim_start();
     let (unit, rest) = rest.strip_prefix(['(', '[']).and_then(|rest| rest.split_once([')', ']'])).unwrap_or(("", rest));
     let own = rest.trim_start_matches([' ', ':', '=']);
-    let value = if own.is_empty() { line.get(place + 1)? } else { own };
+    let mut behind = line[place + 1..].iter().map(String::as_str);
+    // `W`, `W mm` or `W (mm)` in a cell, the number in the next one, and perhaps its unit behind that.
+    let is_unit = |text: &&str| text.contains(char::is_alphabetic) && is_unit_or_blank(text);
+    let (unit, value) =
+        if own.is_empty() || is_unit(&own) { (if own.is_empty() { unit } else { own }, behind.next()?) } else { (unit, own) };
     let is_number = value.replace(',', ".").parse::<f64>().is_ok();
-    Some((if is_number { format!("{value} {unit}").trim_end().to_owned() } else { value.to_owned() }, own.is_empty()))
+    let unit = if unit.is_empty() { behind.next().filter(is_unit).unwrap_or_default() } else { unit };
+    Some(if is_number { format!("{value} {unit}").trim_end().to_owned() } else { value.to_owned() })
 }
 
 /// All that the lines above a table say behind one of these labels.
 pub fn said_above(lines: &[Vec<String>], labels: &[&str]) -> Vec<String> {
-    let of_line = |line: &Vec<String>| {
-        (0..line.len()).filter_map(|at| labelled(line, at, labels)).map(|(value, _)| value).collect::<Vec<_>>()
-    };
+    let of_line = |line: &Vec<String>| (0..line.len()).filter_map(|at| labelled(line, at, labels)).collect::<Vec<_>>();
     lines.iter().flat_map(of_line).filter(|value| !value.is_empty()).collect()
 }
 
@@ -107,11 +111,11 @@ fn noted(table: &Table) -> [Option<String>; 3] {
         lines.iter().flat_map(|line| (0..line.len()).filter(move |at| unlabelled(&line, *at)).map(move |at| line[at].clone()));
     let others: Vec<String> = others.filter(|part| !of_label.contains(part)).collect();
     // Without its hyphen an orientation needs its label.
-    let plain = |text: &str| text.replace('-', "").to_uppercase();
+    let plain = |text: &str| text.replace(['-', ' '], "").to_uppercase();
     let said = said_above(&lines, &OF_ORIENTATION);
     let said = said.iter().find_map(|value| ORIENTATIONS.iter().find(|one| plain(one) == plain(value)).copied());
     let mut words = lines.iter().flatten().flat_map(|part| part.split(|c| !is_written(c)));
-    let orientation = said.or_else(|| words.find_map(|word| ORIENTATIONS.into_iter().find(|one| *one == word)));
+    let orientation = said.or_else(|| words.find_map(|word| ORIENTATIONS[..6].iter().find(|one| **one == word).copied()));
     let waveform = said_above(&lines, &OF_WAVEFORM).into_iter().filter(|value| value.parse::<f64>().is_err());
     let joined = |all: Vec<String>| Some(all.join(", ")).filter(|words| !words.is_empty());
     [orientation.map(str::to_owned), joined([of_label, others].concat()), joined(waveform.collect())]

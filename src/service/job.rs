@@ -19,6 +19,7 @@ use perilife_base::table::units::{CycleUnit, LengthUnit, LoadUnit};
 use perilife_base::table::{Decimal, Sheet};
 use perilife_base::units::MM;
 use perilife_calibration::inspection::{FACTOR, InspectFrom};
+use perilife_calibration::preamble::Preamble;
 use perilife_growth::case::remove_law;
 use perilife_measured::{Column, Import, Layout, MeasuredCurve, Named, Shape, Survey, survey};
 use perilife_results::chart::Size;
@@ -274,6 +275,7 @@ pub struct FoundFile {
     curves: Vec<FoundCurve>,
     /// Keys of `[loading]` that its columns say, where all readings have one load.
     loading: BTreeMap<&'static str, f64>,
+    preamble: Preamble,
     warnings: Vec<String>,
     /// Bad rows, or what is wrong with the file as a whole.
     problems: Vec<Place>,
@@ -343,7 +345,9 @@ fn named<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, key: &str, name: &s
 }
 
 fn found(file: &str, content: &[u8], import: &Import) -> FoundFile {
-    let Survey { header, first_rows, layout, measured, problems, .. } = survey(content, Path::new(file), import);
+    let found = survey(content, Path::new(file), import);
+    let preamble = Preamble::of(&found);
+    let Survey { header, first_rows, layout, measured, problems, .. } = found;
     let unit = |column: &Column| if let Named::Is(unit) = column.unit { unit.name() } else { "" };
     let lengths = |layout: &Layout| -> Vec<usize> {
         layout.series.iter().flat_map(|series| &series.lengths).map(|column| column.index).collect()
@@ -381,6 +385,7 @@ fn found(file: &str, content: &[u8], import: &Import) -> FoundFile {
         taken,
         columns,
         loading: measured.load(),
+        preamble,
         curves: measured.curves.into_iter().map(curve).collect(),
         warnings: measured.warnings,
         problems: problems.into_iter().map(Place::from).collect(),

@@ -149,8 +149,8 @@ fn a_table_gets_its_calibration_file() {
         fs::write(dir.path().join("lab.toml"), lines.replace("length_mm = <...>", "")).unwrap();
         done(dir.path(), "check lab.toml");
     }
-    // So do the lines above the table: what is certain is read, an alloy that is no name of the library is a comment.
-    let german = "Werkstoff;7075-T651\nProbenform;C(T)\nW (mm);50,00\nB (mm);6,35\nR;0,1\n";
+    // So do the lines above the table: what is certain is read, an alloy that the library does not have is a comment.
+    let german = "Werkstoff;7075-T652\nProbenform;C(T)\nW (mm);50,00\nB (mm);6,35\nR;0,1\n";
     let rows: String = (0..6).map(|i| format!("{},0;{},0\n", i, 12 + i)).collect();
     let english =
         "# Specimen type: compact tension\n# Material: al2024-t3\n# W = 2 in, B = 6.35 mm, R = 0.1\n# B: 1,250 mm, R = 3 mm\n";
@@ -162,7 +162,7 @@ fn a_table_gets_its_calibration_file() {
                 "kind = \"compact_tension\"",
                 "width_mm = 50",
                 "thickness_mm = 6.35",
-                "name = <...> # Material in the file: 7075-T651; ",
+                "name = <...> # Material in the file: 7075-T652; ",
             ],
         ),
         (

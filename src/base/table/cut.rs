@@ -148,6 +148,10 @@ fn whole(separator: Separator, lines: &[Line<'_>], comments: &[Line<'_>], file: 
     let rows = separator.cut(lines, file)?;
     let mut table = assemble(rows, file, words)?;
     table.separator = Some(separator);
+    if separator == Separator::Blanks {
+        // Words, not cells.
+        table.preamble = lines[..table.preamble.len()].iter().map(|(line, text)| (*line, text.trim().to_owned())).collect();
+    }
     let first = table.rows.first().map_or(usize::MAX, |row| row.line);
     let above = comments.iter().filter(|(line, _)| *line < first).map(|(line, text)| (*line, (*text).to_owned()));
     table.preamble.extend(above);

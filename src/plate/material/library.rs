@@ -53,6 +53,13 @@ pub fn names() -> Vec<String> {
     names
 }
 
+/// Name and title of every material.
+pub fn titles() -> Vec<(String, String)> {
+    let title = |name: String| find(&name, &Folder::none()).ok().map(|file| (name, file.title));
+    let records = growth_data::records().into_iter().map(|record| (record.name.clone(), record.title()));
+    names().into_iter().filter_map(title).chain(records).collect()
+}
+
 /// Finds a material by the name of a built-in file, or by the path of an own `.toml` file in `folder`.
 pub fn find(name: &str, folder: &Folder) -> Result<MaterialFile> {
     if name.ends_with(".toml") || name.contains(['/', '\\']) {

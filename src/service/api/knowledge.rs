@@ -91,7 +91,7 @@ pub async fn materials() -> Answer<Json<Value>> {
             "has_growth_data": growth_data::record(&name).is_some(),
         }))
     };
-    let names = library::names().into_iter().chain(growth_data::records().into_iter().map(|record| record.name));
+    let names = library::titles().into_iter().map(|(name, _)| name);
     Ok(Json(json!({ "materials": names.map(material).collect::<Answer<Vec<_>>>()? })))
 }
 

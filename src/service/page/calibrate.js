@@ -9,7 +9,6 @@ import { jobToStartFrom } from "./job.js";
 import { createFields } from "./key_fields.js";
 import { hasOnly, keysOf } from "./keys.js";
 import { OF_FILES, createMeasured } from "./measured.js";
-import { preambleOf } from "./preamble.js";
 import { createLoading, createMaterial, createSpecimen } from "./specimen_form.js";
 import { startRun } from "./submit.js";
 
@@ -68,22 +67,22 @@ export function createCalibrateView(materials) {
 
   /** What the first file notes above its table, marked as read from it. */
   function proposeNoted() {
-    const [file] = measured.files() ?? [];
-    if (!file?.text || file.name === noted) return;
-    noted = file.name;
-    const { kind, material: of, stress_ratio: ratio, ...sizes } = preambleOf(file.text, materials);
-    const from = `read from ${file.name}`;
+    const { file, preamble } = measured.first() ?? {};
+    if (!file || file === noted) return;
+    noted = file;
+    const { kind, material: of, stress_ratio: ratio, ...sizes } = preamble;
+    const from = `read from ${file}`;
     if (kind) specimen.choose(kind);
     for (const [metric, value] of Object.entries(sizes)) {
       const field = specimen.field(metric);
-      if (value === undefined || !field || field.touched) continue;
+      if (value === null || !field || field.touched) continue;
       field.propose(value);
       tellUntilEdited(field, from);
     }
     // Loads of the readings have their own.
-    if (measured.loading().stress_ratio === undefined) loading.propose({ stress_ratio: ratio }, from);
+    if (measured.loading().stress_ratio === undefined) loading.propose({ stress_ratio: ratio ?? undefined }, from);
     // No material stands in for one that the library has not.
-    if (of.stated && !material.name.touched) {
+    if (of && !material.name.touched) {
       material.fill({ name: of.name ?? "" });
       tellUntilEdited(material.name, !of.name ? `Material in the file: ${of.stated}; choose one` : of.orientation ? `${from}; no record of orientation ${of.orientation}` : from);
     }

@@ -212,6 +212,8 @@ export function createMeasured(onChange) {
     /** The files {name, file, text}, as a calibration takes them; null before anything is there. */
     files: () => (curves().length === 0 ? null : files),
     names: () => files.map((file) => file.name),
+    /** The first file as the service read it. */
+    first: () => (curves().length === 0 ? null : answer[0]),
     /** What is said of them, as keys of [measured]. */
     said: () => ({ ...said.collect(), columns: columns.names(), leave_out: out.windows() }),
     /** Crack lengths that every curve covers. */

@@ -1,10 +1,13 @@
 //! What people say of their runs: name, note, put away; and the list in which all kinds are found by it. A
 //! preview of measured files with what is taken of them.
 
+use std::fs;
+
 use serde_json::json;
 
 use super::jobs::with_each_store;
 use super::{QUICK, of};
+use crate::interface::cli::{assert_refused, perilife};
 use crate::support::server::Server;
 
 /// Names of a list, newest first.
@@ -80,4 +83,62 @@ fn a_preview_says_what_is_taken() {
     let row = &read["taken"][1];
     assert!((row[0].as_f64().unwrap() - 11.43).abs() < 1e-9 && row[1] == json!(10_500.0) && row[2].is_null(), "{row}");
     assert_eq!(read["loading"], json!({ "force_max_kn": 23.36 }));
+}
+
+/// The page proposes what `calibrate` writes into its template: one reading of one file.
+#[test]
+fn lines_above_a_table_are_read_alike_by_service_and_command() {
+    let (dir, service) = Server::alone(&["--jobs", "0"]);
+    let none = json!({ "kind": null, "width_mm": null, "thickness_mm": null, "stress_ratio": null, "material": null });
+    for (above, said, lines) in [
+        (
+            "Werkstoff;EN AW-2024 T3\nRissebene;T-L\nProbenform;C(T)\nW (mm);50,8\nB;2;in\nR;0,1\n",
+            json!({ "kind": "compact_tension", "width_mm": 50.8, "thickness_mm": 50.8, "stress_ratio": 0.1,
+                "material": { "stated": "EN AW-2024 T3", "name": "al2024-t3-clad-tl", "orientation": null } }),
+            [
+                "kind = \"compact_tension\"", "width_mm = 50.8", "thickness_mm = 50.8", "name = \"al2024-t3-clad-tl\"\n",
+                "stress_ratio = 0.1",
+            ],
+        ),
+        (
+            "# M(T), W = 100 mm B = 1,250 mm\n# Material: AA 7075-T651, orientation: T-L\n# R = 0.1\n# R = 0.5\n",
+            json!({ "kind": "middle_tension", "width_mm": 100.0, "thickness_mm": null, "stress_ratio": null,
+                "material": { "stated": "AA 7075-T651", "name": "al7075-t651-sheet-lt", "orientation": "T-L" } }),
+            [
+                "kind = \"middle_tension\"",
+                "width_mm = 100",
+                "thickness_mm = <...>",
+                "name = \"al7075-t651-sheet-lt\" # no record of orientation T-L",
+                "stress_ratio = <...>",
+            ],
+        ),
+        (
+            "Material;Inconel 718\nW;50\n",
+            json!({ "kind": null, "width_mm": null, "thickness_mm": null, "stress_ratio": null,
+                "material": { "stated": "Inconel 718", "name": null, "orientation": null } }),
+            [
+                "kind = <...>",
+                "width_mm = <...>",
+                "thickness_mm = <...>",
+                "name = <...> # Material in the file: Inconel 718; ",
+                "stress_ratio = <...>",
+            ],
+        ),
+        (
+            "",
+            none,
+            ["kind = <...>", "width_mm = <...>", "thickness_mm = <...>", "name = <...> # perilife", "stress_ratio = <...>"],
+        ),
+    ] {
+        let rows: String = (0..6).map(|i| format!("{};{},5\n", 1000 * i, 12 + i)).collect();
+        let table = format!("{above}cycles;a (mm)\n{rows}");
+        let read = service.send_form("/v1/measured", &[("file", Some("lab.csv"), &table)]).expect(200).json();
+        assert_eq!(read["files"][0]["preamble"], said, "{above}");
+        fs::write(dir.path().join("lab.csv"), &table).unwrap();
+        assert_refused(&perilife(dir.path(), "calibrate lab.csv --out fit"), 2, &lines);
+    }
+    let schemas = service.get("/openapi.json").json()["components"]["schemas"].clone();
+    let properties = |name: &str| schemas[name]["properties"].as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+    assert_eq!(properties("Preamble"), ["kind", "material", "stress_ratio", "thickness_mm", "width_mm"]);
+    assert_eq!(schemas["FoundFile"]["properties"]["preamble"]["$ref"], "#/components/schemas/Preamble");
 }
