@@ -82,14 +82,15 @@ impl Fold {
         of.at.extend(&boundary.grips);
         of.equal.resize(of.at.len(), EQUAL * distance(low, high));
         let middle = along(low, high, 0.5);
-        let keeps = |image: &Image| forces.iter().all(|forces| image.keeps(forces)) && image.keeps_supports(&boundary.held);
+        let keeps =
+            |image: &Image| forces.iter().all(|forces| image.is_image(forces, forces)) && image.keeps_supports(&boundary.held);
         let image = |signs| Image::new(&of, Flip { middle, signs }).filter(keeps);
         let mut images: Vec<Image> = [[-1.0, 1.0], [1.0, -1.0]].into_iter().filter_map(image).collect();
         if images.len() != 1 {
             images.extend(image([-1.0, -1.0]));
         }
         // Of both mirrors and half a turn each is the other two.
-        if images.len() % 2 == 0 {
+        if images.len().is_multiple_of(2) {
             return None;
         }
         let mut fold = Fold {
@@ -291,11 +292,7 @@ impl<'a> Image<'a> {
         (first + (2 + 2 * place + mode) as u32, if mode == 0 { 1.0 } else { x * y })
     }
 
-    /// Whether forces on unknowns are their own image.
-    fn keeps(&self, forces: &[f64]) -> bool {
-        self.is_image(forces, forces)
-    }
-
+    /// Whether some forces on unknowns are the image of others.
     fn is_image(&self, forces: &[f64], image: &[f64]) -> bool {
         let largest = forces.iter().fold(0.0_f64, |largest, force| largest.max(force.abs()));
         self.each().all(|(unknown, other, sign)| (image[other] - sign * forces[unknown]).abs() <= EQUAL_FORCE * largest)
