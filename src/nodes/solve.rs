@@ -174,7 +174,7 @@ pub fn solve_with(
     let pins = boundary.pins.iter().flatten().map(|pin| Square::spring(*pin, boundary.spring));
     let held: Vec<Square> = boundary.held.iter().cloned().chain(pins).collect();
     let whole = solve_part(plate, &loads, (None, &first), (&cells, &held))?;
-    whole.ok_or_else(|| Error::Mechanics("crack-face contact of a whole plate asks for images".to_owned()))
+    whole.ok_or_else(|| Error::Mechanics("crack-face contact cannot be solved".to_owned()))
 }
 
 /// What a plate is loaded with.
