@@ -42,6 +42,8 @@ const SMALL: f64 = 0.1;
 /// Distance, in spacings, within which a corner of a piece is the tip.
 const AT_TIP: f64 = 1e-6;
 
+/// Distance of a line from a cell, in its spacings, within which it runs along the border: cells on both sides of it have it as a side.
+const ON_BORDER: f64 = 1e-6;
 /// Distance of a tip from a cell, in its spacings, within which the cell is integrated as one with a tip, at the point nearest to it: 1/r
 /// a thousandth of a spacing beyond a side leaves K 2 % wrong by 3 × 3 points.
 const BESIDE_TIP: f64 = 0.3;
@@ -83,7 +85,8 @@ impl Dividers {
                 tips.entry(leaf).or_default().push((nearest, axes.ahead));
             });
         }
-        let [sides_near, cracks_near] = [&plate.sides, &cracks].map(|segments| by_leaf(grid, segments.iter().copied(), 0.0));
+        let [sides_near, cracks_near] =
+            [&plate.sides, &cracks].map(|segments| by_leaf(grid, segments.iter().copied(), ON_BORDER));
         Dividers { sides: plate.sides.clone(), cracks, sides_near, cracks_near, tips }
     }
 

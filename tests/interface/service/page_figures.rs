@@ -42,12 +42,13 @@ pub fn one_figure_has_one_rounding(walk: &Walk, service: &Server, fit: &str) {
 
     // Cycles have the digits of their error; an inspection starts where it was asked for.
     let beside = run("crack_beside_hole", json!({ "inspect_from_mm": 15, "pod": "12,20", "residual_strength": true }));
-    let digits = |key: &str, of: &Value| format!("{:.0}", (of[key].as_f64().unwrap() / 100.0).round() * 100.0);
+    let error = beside["error_estimate_percent"].as_f64();
+    let digits = |key: &str, of: &Value| PLAIN.by_error(of[key].as_f64().unwrap(), error).replace(' ', "");
     let (life, left) = (digits("life_cycles", &beside), digits("remaining_cycles", &beside["inspection"]));
     page.see("[data-value=remaining_cycles]");
     assert_eq!(shown("[data-value=remaining_cycles]"), format!("{left} cycles"));
     assert_says(&shown("[data-terms=remaining]"), &[format!("of {life} cycles")]);
-    let every = promised(&beside["inspection"], "inspection_interval_cycles", &within(beside["error_estimate_percent"].as_f64()));
+    let every = promised(&beside["inspection"], "inspection_interval_cycles", &within(error));
     assert_eq!(shown("[data-value=inspection_interval_cycles]"), format!("{every} cycles"));
     assert_says(&shown("[data-part=result]"), &[format!("{life} cycles")]);
     assert_eq!(page.run("return document.querySelector('#today-length').value"), "15.00");
