@@ -9,8 +9,8 @@ use super::basis::Value;
 use super::cells::{Dividers, QuadraturePoint};
 use super::dilatation::{Dilatation, Patch, side, split};
 use super::field::{Discretisation, Local, TipFields, singular};
-use super::fold::Fold;
 use super::front::{FrontalMatrix, lower_product, whole_product};
+use super::part::Part;
 use perilife_base::error::Result;
 
 /// Area of points that may be left out where nodes in reach do not span the basis, over that of a cell: in the wedge between a slant
@@ -70,11 +70,11 @@ impl Scratch {
     }
 
     /// Numbers the nodes in reach of any point, or those that stand for them, and their enriched unknowns.
-    fn number(&mut self, plate: &Discretisation, fold: Option<&Fold>, places: &[u32]) {
+    fn number(&mut self, plate: &Discretisation, part: &Part, places: &[u32]) {
         self.nodes.clear();
-        self.has_images = fold.is_some_and(|fold| self.values.iter().any(|value| !fold.is_plain(value.node)));
+        self.has_images = self.values.iter().any(|value| !part.is_plain(value.node));
         for value in &self.values {
-            let node = fold.map_or(value.node, |fold| fold.node(value.node));
+            let node = part.node(value.node);
             let number = &mut self.numbers[node as usize];
             if *number == u32::MAX {
                 *number = 0;
@@ -91,7 +91,7 @@ impl Scratch {
         }
     }
 
-    fn fill(&mut self, plate: &Discretisation, fold: Option<&Fold>, thickness: f64) {
+    fn fill(&mut self, plate: &Discretisation, part: &Part, thickness: f64) {
         let Scratch { values, ends, fields, numbers, nodes, enriched, has_images, gradients, strains, stresses, .. } = self;
         let (n, m, points, tips) = (if *has_images { 0 } else { 2 * nodes.len() }, enriched.len(), ends.len(), plate.axes.len());
         let is_enriched = usize::from(m > 0);
@@ -109,10 +109,10 @@ impl Scratch {
         for (index, &(end, area)) in ends.iter().enumerate() {
             let factor = thickness * area;
             let values = &values[std::mem::replace(&mut first_value, end)..end];
-            if let Some(fold) = fold.filter(|_| *has_images) {
+            if *has_images {
                 plate.each_unknown(values, &fields[index * tips..(index + 1) * tips], |node, unknown, (_, gradient)| {
-                    let (place, sign) = fold.unknown(node, unknown);
-                    let number = numbers[fold.node(node) as usize] as usize;
+                    let (place, sign) = part.unknown(node, unknown);
+                    let number = numbers[part.node(node) as usize] as usize;
                     let column = 3 * index * m + (nodes[number].1 + place) as usize;
                     let strain = [gradient[0][0], gradient[1][1], gradient[0][1] + gradient[1][0]];
                     for (row, (strain, stress)) in strain.into_iter().zip(elasticity.stress(&gradient)).enumerate() {
@@ -197,15 +197,15 @@ pub fn dilatation(plate: &Discretisation, cells: &[(usize, Vec<QuadraturePoint>)
 /// Errors: nodes in reach of a point do not span the basis.
 pub fn add_cell(
     plate: &Discretisation,
-    (fold, thickness): (Option<&Fold>, f64),
+    (part, thickness): (&Part, f64),
     (leaf, points): (usize, &[QuadraturePoint]),
     scratch: &mut Scratch,
     places: &[u32],
     front: &mut FrontalMatrix,
 ) -> Result<()> {
     scratch.read(plate, leaf, points)?;
-    scratch.number(plate, fold, places);
-    scratch.fill(plate, fold, thickness);
+    scratch.number(plate, part, places);
+    scratch.fill(plate, part, thickness);
     let Scratch {
         ends,
         numbers,

@@ -200,6 +200,12 @@ impl Boundary {
     }
 }
 
+/// Terms by their unknown, those of one added up.
+pub fn summed(mut terms: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
+    terms.sort_by_key(|term| term.0);
+    terms.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|term| term.1).sum())).collect()
+}
+
 fn push_force(forces: &mut [f64], plate: &Discretisation, at: Point, force: Point) -> Result<()> {
     for (unknown, [x, y]) in motions(plate, at)? {
         forces[unknown as usize] += force[0] * x + force[1] * y;

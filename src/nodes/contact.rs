@@ -10,11 +10,11 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::boundary::motions;
+use super::boundary::{motions, summed};
 use super::dissection::Factor;
 use super::field::Discretisation;
-use super::fold::Fold;
 use super::front::columns_product;
+use super::part::Part;
 use perilife_base::error::{Error, Result};
 use perilife_plate::specimen::geometry::{along, direction, distance, distance_to_segment, meeting_share, segments_touch};
 use perilife_plate::specimen::{Point, Specimen};
@@ -91,16 +91,8 @@ impl Segment {
                 terms.extend(of_point.iter().map(|(unknown, [u, v])| (*unknown, sign * 0.5 * (x * v - y * u))));
             }
         }
-        terms.sort_by_key(|term| term.0);
-        let mut row: Vec<(u32, f64)> = Vec::new();
-        for (unknown, weight) in terms {
-            match row.last_mut() {
-                Some(last) if last.0 == unknown => last.1 += weight,
-                _ => row.push((unknown, weight)),
-            }
-        }
         let area = distance(ends[0], ends[1]) * specimen.thickness;
-        Some(Segment { ends, area, row, soft: spacing / (STIFFNESS * plate.elasticity().plane_modulus * area) })
+        Some(Segment { ends, area, row: summed(terms), soft: spacing / (STIFFNESS * plate.elasticity().plane_modulus * area) })
     }
 
     fn opening(&self, u: &[f64]) -> f64 {
@@ -116,45 +108,42 @@ pub struct Contact {
     pub u: Vec<f64>,
 }
 
-/// Cracks of which flanks overlap.
-pub struct Overlap {
-    segments: Vec<Segment>,
-    /// Openings of the segments, and the largest of them or of their overlaps, m.
-    free: Vec<f64>,
-    largest: f64,
-}
+/// The segments of the cracks of a plate.
+pub struct Flanks(Vec<Segment>);
 
-impl Overlap {
-    /// Under the displacement u of `K u = f`; `None` where no flanks overlap.
-    pub fn of(specimen: &Specimen, plate: &Discretisation, u: &[f64]) -> Option<Overlap> {
-        let segments = segments(specimen, plate);
-        let free: Vec<f64> = segments.iter().map(|segment| segment.opening(u)).collect();
-        let largest = free.iter().fold(0.0_f64, |largest, opening| largest.max(opening.abs()));
-        let overlaps = free.iter().any(|opening| *opening < -ROUND_OFF * largest);
-        overlaps.then_some(Overlap { segments, free, largest })
+impl Flanks {
+    pub fn of(specimen: &Specimen, plate: &Discretisation) -> Flanks {
+        Flanks(segments(specimen, plate))
     }
 
-    /// Of the unknowns that stand for all, the segments that do; `None` where one has no image.
-    pub fn folded(self, fold: &Fold) -> Option<Overlap> {
-        let ends: Vec<[Point; 2]> = self.segments.iter().map(|segment| segment.ends).collect();
-        let shares = fold.shares(&ends)?;
-        let of_share = |((segment, free), share): ((Segment, f64), Option<f64>)| {
+    /// Ends of the segments, m.
+    pub fn ends(&self) -> Vec<[Point; 2]> {
+        self.0.iter().map(|segment| segment.ends).collect()
+    }
+
+    /// Those that stand for all, as rows of the unknowns that do.
+    pub fn of_part(self, part: &Part) -> Flanks {
+        let of_share = |(segment, share): (Segment, Option<f64>)| {
             let (Segment { ends, area, row, soft }, share) = (segment, share?);
-            Some((Segment { ends, area: share * area, row: fold.row(row.into_iter()), soft: soft / share }, free))
+            Some(Segment { ends, area: share * area, row: part.row(row.into_iter()), soft: soft / share })
         };
-        let (segments, free) = self.segments.into_iter().zip(self.free).zip(shares).filter_map(of_share).unzip();
-        Some(Overlap { segments, free, largest: self.largest })
+        Flanks(self.0.into_iter().zip(part.segments.iter().copied()).filter_map(of_share).collect())
     }
 }
 
-/// Brings flanks that overlap into contact, y being `L⁻¹ f`.
+/// Brings flanks that overlap into contact, u being the displacement of `K u = f` and y `L⁻¹ f`; `None` where none do.
 /// Errors: [`Error::Mechanics`] where no set of segments is found.
-pub fn press(Overlap { segments, free, largest }: &Overlap, factor: &Factor, y: &[f64]) -> Result<Contact> {
+pub fn press(Flanks(segments): &Flanks, factor: &Factor, y: &[f64], u: &[f64]) -> Result<Option<Contact>> {
+    let free: Vec<f64> = segments.iter().map(|segment| segment.opening(u)).collect();
+    let largest = free.iter().fold(0.0_f64, |largest, opening| largest.max(opening.abs()));
+    if free.iter().all(|opening| *opening >= -ROUND_OFF * largest) {
+        return Ok(None);
+    }
     let mut compliance = Compliance::new(segments, factor, y.len());
     let mut active: Vec<usize> = (0..segments.len()).filter(|&k| free[k] < 0.0).collect();
     let (mut fewest, mut chances) = (usize::MAX, CHANCES);
     for _ in 0..TURNS {
-        let forces = compliance.forces(&active, free)?;
+        let forces = compliance.forces(&active, &free)?;
         let mut sum = y.to_vec();
         for (&k, force) in active.iter().zip(&forces) {
             sum.iter_mut().zip(compliance.column(k)).for_each(|(sum, value)| *sum += force * value);
@@ -172,7 +161,7 @@ pub fn press(Overlap { segments, free, largest }: &Overlap, factor: &Factor, y: 
                 segments[k].row.iter().for_each(|&(unknown, weight)| on_unknowns[unknown as usize] += force * weight);
             }
             let pressed = active.iter().zip(&forces).map(pressed).collect();
-            return Ok(Contact { pressed, forces: on_unknowns, u: sum });
+            return Ok(Some(Contact { pressed, forces: on_unknowns, u: sum }));
         }
         // Block principal pivoting (Júdice and Pires 1994, Comput. Oper. Res. 21:587): all at once while fewer are wrong, else the last one.
         if wrong.len() < fewest {

@@ -5,16 +5,16 @@ use std::sync::{Mutex, PoisonError};
 use rayon::prelude::*;
 
 use super::assembly::{Scratch, add_cell, dilatation};
-use super::boundary::{Boundary, Square, UNKNOWNS_OF_GRIP, press_cracks};
+use super::boundary::{Boundary, Square, press_cracks};
 use super::cells::{QuadraturePoint, quadrature};
-use super::contact::{Overlap, Pressed, press};
+use super::contact::{Flanks, Pressed, press};
 use super::dilatation::split;
 use super::dissection::{Factor, Matrices, Member};
 use super::field::{Discretisation, Local};
-use super::fold::Fold;
 use super::front::FrontalMatrix;
+use super::part::Part;
 use super::pins::PinColumns;
-use perilife_base::error::{Error, Result};
+use perilife_base::error::Result;
 use perilife_base::raster::PointGrid;
 use perilife_base::watch::{self, Stage};
 use perilife_plate::loading::residual::ResidualStress;
@@ -71,10 +71,7 @@ struct Stiffness<'a> {
     plate: &'a Discretisation,
     thickness: f64,
     cells: &'a [(usize, Vec<QuadraturePoint>)],
-    held: &'a [Square],
-    /// Unknowns that stand for all, and the first of every node, and of every grip after them.
-    fold: Option<&'a Fold>,
-    first: &'a [u32],
+    part: &'a Part,
     /// Of threads that are done with theirs.
     scratch: Mutex<Vec<Scratch>>,
 }
@@ -85,11 +82,9 @@ impl Stiffness<'_> {
             let bounds = |of: fn(f64, f64) -> f64, from: f64| [0, 1].map(|i| points.iter().map(|p| p.at[i]).fold(from, of));
             let box_of_points = [bounds(f64::min, f64::INFINITY), bounds(f64::max, f64::NEG_INFINITY)];
             let mut nodes = self.plate.in_reach(*leaf, box_of_points);
-            if let Some(fold) = self.fold {
-                nodes.iter_mut().for_each(|node| *node = fold.node(*node));
-                nodes.sort_unstable();
-                nodes.dedup();
-            }
+            nodes.iter_mut().for_each(|node| *node = self.part.node(*node));
+            nodes.sort_unstable();
+            nodes.dedup();
             Member { at: self.plate.grid.middle(*leaf), nodes }
         };
         let of_support = |square: &Square| {
@@ -99,13 +94,13 @@ impl Stiffness<'_> {
             Member { at: *at.get(nodes[0] as usize).unwrap_or(&at[0]), nodes }
         };
         let mut members: Vec<Member> = self.cells.par_iter().map(of_cell).collect();
-        members.extend(self.held.iter().map(of_support));
+        members.extend(self.part.held.iter().map(of_support));
         members
     }
 
     /// Node, or grip, that an unknown belongs to.
     fn node(&self, unknown: u32) -> u32 {
-        self.first.partition_point(|first| *first <= unknown) as u32 - 1
+        self.part.first.partition_point(|first| *first <= unknown) as u32 - 1
     }
 }
 
@@ -117,13 +112,13 @@ impl Matrices for Stiffness<'_> {
         for &member in members {
             let member = member as usize;
             if let Some((leaf, points)) = self.cells.get(member) {
-                add_cell(self.plate, (self.fold, self.thickness), (*leaf, points), &mut scratch, places, front)?;
+                add_cell(self.plate, (self.part, self.thickness), (*leaf, points), &mut scratch, places, front)?;
                 continue;
             }
-            let Square { unknowns, v, factor, .. } = &self.held[member - self.cells.len()];
+            let Square { unknowns, v, factor, .. } = &self.part.held[member - self.cells.len()];
             let place = |unknown: u32| {
                 let node = self.node(unknown) as usize;
-                (places[node] + unknown - self.first[node]) as usize
+                (places[node] + unknown - self.part.first[node]) as usize
             };
             for (k, &a) in unknowns.iter().enumerate() {
                 unknowns[..=k].iter().zip(v).for_each(|(&b, of_b)| front.add(place(a), place(b), factor * v[k] * of_b));
@@ -159,63 +154,26 @@ pub fn solve_with(
     if let Some(residual) = residual {
         press_cracks(&mut released, specimen, plate, &|at| residual.at(at))?;
     }
-    let grips = (1..=boundary.grips.len()).map(|grip| (plate.unknowns() + grip * UNKNOWNS_OF_GRIP) as u32);
-    let first: Vec<u32> = plate.first.iter().copied().chain(grips).collect();
-    let loads = Loads { specimen, load, boundary: &boundary, released: &released, has_residual: residual.is_some(), lower };
-    // Pins touch, and means of dilatation are, as they may.
-    let may_fold = !specimen.loads.iter().any(Load::is_elastic_pin) && split(plate.elasticity()).1[1] == 0.0;
-    if may_fold
-        && let Some(fold) = Fold::of(specimen, plate, &boundary, [&boundary.forces, &released], &first)
-        && let Some(solution) = solve_part(plate, &loads, (Some(&fold), &fold.first), (&fold.cells, &fold.held))?
-    {
-        return Ok(solution);
-    }
-    let cells: Vec<(usize, f64)> = plate.grid.leaves().map(|leaf| (leaf, 1.0)).collect();
-    let pins = boundary.pins.iter().flatten().map(|pin| Square::spring(*pin, boundary.spring));
-    let held: Vec<Square> = boundary.held.iter().cloned().chain(pins).collect();
-    let whole = solve_part(plate, &loads, (None, &first), (&cells, &held))?;
-    whole.ok_or_else(|| Error::Mechanics("crack-face contact cannot be solved".to_owned()))
-}
-
-/// What a plate is loaded with.
-struct Loads<'a> {
-    specimen: &'a Specimen,
-    /// Pa or N.
-    load: f64,
-    /// Supports, and forces of the nominal load but for elastic pins, N; of a displacement those that move its places by 1 m.
-    boundary: &'a Boundary,
-    /// What the residual stress releases on the cracks, N.
-    released: &'a [f64],
-    has_residual: bool,
-    /// Lower loads over the nominal one, ascending.
-    lower: &'a [f64],
-}
-
-/// The equilibrium of a plate by some of its cells and what holds their unknowns; `None` where flanks in contact have no images.
-fn solve_part(
-    plate: &Discretisation,
-    loads: &Loads,
-    (fold, first): (Option<&Fold>, &[u32]),
-    (cells, held): (&[(usize, f64)], &[Square]),
-) -> Result<Option<Solution>> {
-    let Loads { specimen, boundary, has_residual, lower, .. } = *loads;
-    let cells = quadrature(specimen, plate, cells);
+    let flanks = Flanks::of(specimen, plate);
+    // Pins touch where they may; means of dilatation are of cells.
+    let is_whole = specimen.loads.iter().any(Load::is_elastic_pin) || split(plate.elasticity()).1[1] > 0.0;
+    let part = Part::of((specimen, plate), &boundary, [&boundary.forces, &released], &flanks.ends(), is_whole);
+    let cells = quadrature(specimen, plate, &part.cells);
     plate.with_dilatation(|| dilatation(plate, &cells));
-    let thickness = specimen.thickness;
-    let stiffness = Stiffness { plate, thickness, cells: &cells, held, fold, first, scratch: Mutex::default() };
-    let factor = Factor::of(&stiffness.members(), first, &stiffness)?;
+    let stiffness = Stiffness { plate, thickness: specimen.thickness, cells: &cells, part: &part, scratch: Mutex::default() };
+    let factor = Factor::of(&stiffness.members(), &part.first, &stiffness)?;
     let pins = PinColumns::new(specimen, plate, &factor, boundary.forces.len())?;
-    let balance = Balance { plate, loads, factor: &factor, fold, pins };
-    let Some(whole) = balance.at(1.0)? else { return Ok(None) };
-    let lower = if has_residual || balance.pins.is_some() || !whole.pressed.is_empty() {
-        let Some(lower) = balance.lower(&whole, lower)? else { return Ok(None) };
-        lower
+    let flanks = flanks.of_part(&part);
+    let balance =
+        Balance { specimen, load, boundary: &boundary, released: &released, factor: &factor, part: &part, flanks, pins };
+    let whole = balance.at(1.0)?;
+    let lower = if residual.is_some() || balance.pins.is_some() || !whole.pressed.is_empty() {
+        balance.lower(&whole, residual.is_some(), lower)?
     } else {
         Vec::new()
     };
     let area: f64 = cells.iter().flat_map(|(_, points)| points).map(|point| point.area).sum();
-    let parts = fold.map_or(1, Fold::parts);
-    Ok(Some(Solution { whole, lower, area: parts as f64 * area, parts }))
+    Ok(Solution { whole, lower, area: part.parts() as f64 * area, parts: part.parts() })
 }
 
 /// Turns in which pins and flanks settle on each other at the most, and the change of the forces of flanks, over the largest, that is none.
@@ -224,17 +182,23 @@ const COUPLED: f64 = 1e-3;
 
 /// The equilibrium of a plate whose stiffness is factored.
 struct Balance<'a> {
-    plate: &'a Discretisation,
-    loads: &'a Loads<'a>,
+    specimen: &'a Specimen,
+    /// Pa or N.
+    load: f64,
+    /// Supports, and forces of the nominal load but for elastic pins, N; of a displacement those that move its places by 1 m.
+    boundary: &'a Boundary,
+    /// What the residual stress releases on the cracks, N.
+    released: &'a [f64],
     factor: &'a Factor,
-    fold: Option<&'a Fold>,
+    part: &'a Part,
+    flanks: Flanks,
     pins: Option<PinColumns<'a>>,
 }
 
 impl Balance<'_> {
-    /// Under a share of the nominal load; `None` where flanks in contact have no images.
-    fn at(&self, share: f64) -> Result<Option<Loaded>> {
-        let Balance { plate, factor, fold, loads: &Loads { specimen, load, boundary, released, .. }, .. } = *self;
+    /// Under a share of the nominal load.
+    fn at(&self, share: f64) -> Result<Loaded> {
+        let Balance { specimen, load, boundary, released, factor, part, .. } = *self;
         let section = specimen.moved_section();
         let size = if section.is_some() { share.signum() } else { share };
         let others: Vec<f64> = boundary.forces.iter().zip(released).map(|(force, released)| size * force + released).collect();
@@ -242,31 +206,17 @@ impl Balance<'_> {
         let columns = self.pins.as_ref().filter(|_| share > 0.0);
         let (mut beside, mut of_flanks) = (others.clone(), Vec::new());
         let mut turns = if columns.is_some() { COUPLED_MOST } else { 1 };
-        let whole = |u: Vec<f64>| match fold {
-            Some(fold) => fold.whole(&u),
-            None => u,
-        };
         let (mut u, mut contact, pins) = loop {
             let pins = columns.map(|columns| columns.press(&beside, share * load)).transpose()?;
             let mut y = others.clone();
             if let Some(pins) = &pins {
                 y.iter_mut().zip(&pins.forces).for_each(|(y, of_pins)| *y += of_pins);
             }
-            if let Some(fold) = fold {
-                y = fold.forces(&y);
-            }
+            y = part.forces(&y);
             factor.forward(&mut y);
             let mut u = y.clone();
             factor.backward(&mut u);
-            let u = whole(u);
-            let overlap = match (Overlap::of(specimen, plate, &u), fold) {
-                (Some(overlap), Some(fold)) => match overlap.folded(fold) {
-                    Some(overlap) => Some(overlap),
-                    None => return Ok(None),
-                },
-                (overlap, _) => overlap,
-            };
-            let contact = overlap.map(|overlap| press(&overlap, factor, &y)).transpose()?;
+            let contact = press(&self.flanks, factor, &y, &u)?;
             // Flanks that a pin presses together bear on it in turn.
             let forces = contact.as_ref().map_or_else(Vec::new, |contact| contact.forces.clone());
             let change =
@@ -282,14 +232,12 @@ impl Balance<'_> {
         };
         let mut free = Vec::new();
         if let Some(contact) = &mut contact {
-            free = std::mem::replace(&mut u, whole(std::mem::take(&mut contact.u)));
+            free = part.whole(&std::mem::replace(&mut u, std::mem::take(&mut contact.u)));
         }
-        let mut pressed = contact.map_or_else(Vec::new, |contact| contact.pressed);
-        if let Some(fold) = fold {
-            let images =
-                |own: &Pressed| fold.orbit(own.ends).into_iter().map(|ends| Pressed { ends, ..*own }).collect::<Vec<_>>();
-            pressed = pressed.iter().flat_map(images).collect();
-        }
+        u = part.whole(&u);
+        let images = |own: Pressed| part.orbit(own.ends).into_iter().map(move |ends| Pressed { ends, ..own });
+        let mut pressed: Vec<Pressed> =
+            contact.map_or_else(Vec::new, |contact| contact.pressed).into_iter().flat_map(images).collect();
         let work = match section {
             None => others.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>() + pins.as_ref().map_or(0.0, |pins| pins.work),
             // Moved by 1 m, then scaled to the force of the load: contact of flanks changes with it in proportion.
@@ -304,21 +252,23 @@ impl Balance<'_> {
         // Of lower loads nobody asks.
         let asked = columns.zip(pins).filter(|_| share == 1.0);
         let contacts = asked.map_or_else(Vec::new, |(columns, pins)| pins.contacts(columns, &u));
-        Ok(Some(Loaded { share, u, work, pressed, free, contacts }))
+        Ok(Loaded { share, u, work, pressed, free, contacts })
     }
 
     /// Under lower loads, ascending, if it does not follow the load in proportion.
-    fn lower(&self, whole: &Loaded, loads: &[f64]) -> Result<Option<Vec<Loaded>>> {
-        let (has_pins, has_residual) = (!whole.contacts.is_empty(), self.loads.has_residual);
+    fn lower(&self, whole: &Loaded, has_residual: bool, loads: &[f64]) -> Result<Vec<Loaded>> {
+        let has_pins = !whole.contacts.is_empty();
         // A pin bears no pull; flanks alone are in contact as they are at every load of the same sign.
         let mut asked: Vec<f64> = loads.iter().map(|load| if has_pins { load.max(0.0) } else { *load }).collect();
         asked.dedup();
         asked.retain(|load| has_pins || has_residual || *load < 0.0);
-        let Some(least) = asked.first().map(|load| self.at(*load)).transpose()? else { return Ok(Some(Vec::new())) };
-        let Some(least) = least else { return Ok(None) };
+        let Some(least) = asked.first().map(|load| self.at(*load)).transpose()? else { return Ok(Vec::new()) };
         let bends = has_pins || has_residual && !(whole.pressed.is_empty() && least.pressed.is_empty());
-        let others = asked.into_iter().skip(1).filter(|_| bends).map(|load| self.at(load));
-        std::iter::once(Ok(Some(least))).chain(others).collect()
+        let mut lower = vec![least];
+        for load in asked.into_iter().skip(1).filter(|_| bends) {
+            lower.push(self.at(load)?);
+        }
+        Ok(lower)
     }
 }
 

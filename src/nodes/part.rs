@@ -1,14 +1,15 @@
-//! Symmetry: the unknowns that stand for all of a plate that is its own image.
+//! The part of a plate that stands for it: all of it, or a half or a quarter of one that is its own image.
 //!
 //! A plate that a mirror about a line through its middle, both such lines or half a turn leave as it is, with its cracks, nodes, supports and
 //! loads, moves symmetrically: an unknown equals, but for its sign, that of every image of its node, and one whose image is its own opposite
 //! vanishes. With `u = T v` the energy `½ uᵀ K u` is that of the cells of one part, times the number of parts: `Tᵀ K T` is summed over these
-//! cells alone, whose rows of strain go to the unknowns v. The displacement is that of the whole plate but for round-off.
+//! cells alone, whose rows of strain go to the unknowns v.
 //!
 //! Modes I and II of a tip are even and odd in a mirror, and both turn with the plate.
 
-use super::boundary::{Boundary, Square};
+use super::boundary::{Boundary, Square, UNKNOWNS_OF_GRIP, summed};
 use super::field::Discretisation;
+use super::grid::Grid;
 use perilife_plate::specimen::geometry::{along, bounding_box, distance};
 use perilife_plate::specimen::{Point, Specimen};
 
@@ -36,22 +37,24 @@ struct Unknowns<'a> {
     at: Vec<Point>,
     /// Distance of two nodes that are the same, m.
     equal: Vec<f64>,
-    /// First unknown of each.
-    first: &'a [u32],
+    /// First unknown of each, and their number.
+    first: Vec<u32>,
 }
 
-/// An image of a plate, and which node and which tip is that of each.
+/// An image of a plate: which node, tip, cell and segment of its cracks is that of each.
 struct Image<'a> {
     of: &'a Unknowns<'a>,
     flip: Flip,
     nodes: Vec<u32>,
     tips: Vec<u32>,
+    leaves: Vec<usize>,
+    segments: Vec<u32>,
 }
 
-/// Which unknowns stand for all.
+/// Which cells are solved for, and which unknowns stand for all.
 #[derive(Debug)]
-pub struct Fold {
-    /// Images of the plate but for itself.
+pub struct Part {
+    /// Images of the plate but for itself; none of one that is solved whole.
     flips: Vec<Flip>,
     /// The node that stands for each.
     nodes: Vec<u32>,
@@ -63,52 +66,58 @@ pub struct Fold {
     pub first: Vec<u32>,
     /// Cells of the part, with the share of each that belongs to it.
     pub cells: Vec<(usize, f64)>,
+    /// The share that belongs to it of every segment of cracks, none of one for which another stands.
+    pub segments: Vec<Option<f64>>,
     /// Supports, what holds rigid motions that are symmetric, and unknowns that vanish.
     pub held: Vec<Square>,
 }
 
-impl Fold {
-    /// Of a plate whose nodes' unknowns, and those of its grips after them, begin at `first`; `None` of one that is not its own image.
+impl Part {
+    /// Of a plate with these `segments` of cracks under these `forces`; all of it if it is no image of itself, or `is_whole`.
     pub fn of(
-        specimen: &Specimen,
-        plate: &Discretisation,
+        (specimen, plate): (&Specimen, &Discretisation),
         boundary: &Boundary,
         forces: [&[f64]; 2],
-        first: &[u32],
-    ) -> Option<Fold> {
+        segments: &[[Point; 2]],
+        is_whole: bool,
+    ) -> Part {
         let [low, high] = bounding_box(&specimen.outline);
-        let mut of = Unknowns { plate, at: plate.nodes.at.clone(), equal: Vec::new(), first };
-        of.equal.extend(plate.nodes.spacing.iter().map(|spacing| EQUAL * spacing));
-        of.at.extend(&boundary.grips);
-        of.equal.resize(of.at.len(), EQUAL * distance(low, high));
-        let middle = along(low, high, 0.5);
+        let (size, middle) = (distance(low, high), along(low, high, 0.5));
+        let of = Unknowns::new(plate, &boundary.grips, size);
         let keeps =
             |image: &Image| forces.iter().all(|forces| image.is_image(forces, forces)) && image.keeps_supports(&boundary.held);
-        let image = |signs| Image::new(&of, Flip { middle, signs }).filter(keeps);
-        let mut images: Vec<Image> = [[-1.0, 1.0], [1.0, -1.0]].into_iter().filter_map(image).collect();
-        if images.len() != 1 {
-            images.extend(image([-1.0, -1.0]));
+        let image = |signs| Image::new(&of, Flip { middle, signs }, segments).filter(keeps);
+        let mut images: Vec<Image> = Vec::new();
+        if !is_whole {
+            images.extend([[-1.0, 1.0], [1.0, -1.0]].into_iter().filter_map(image));
+            if images.len() != 1 {
+                images.extend(image([-1.0, -1.0]));
+            }
+            // Of both mirrors and half a turn each is the other two.
+            if images.len() == 2 {
+                images.clear();
+            }
         }
-        // Of both mirrors and half a turn each is the other two.
-        if images.len().is_multiple_of(2) {
-            return None;
-        }
-        let mut fold = Fold {
+        let nodes = standing(&of, &images, EQUAL * size);
+        let mut part = Part {
             flips: images.iter().map(|image| image.flip).collect(),
-            nodes: (0..of.at.len() as u32).map(|node| standing(&of, &images, node)).collect(),
-            plain: vec![true; of.at.len()],
-            unknowns: vec![(u32::MAX, 0.0); first[of.at.len()] as usize],
+            plain: vec![true; nodes.len()],
+            nodes,
+            unknowns: vec![(u32::MAX, 0.0); of.first[of.at.len()] as usize],
             first: vec![0],
             cells: Vec::new(),
+            segments: Vec::new(),
             held: Vec::new(),
         };
-        for leaf in plate.grid.leaves() {
-            let orbit: Vec<usize> = images.iter().map(|image| image.leaf(leaf)).collect::<Option<_>>()?;
-            fold.cells.extend(fold.share(leaf, orbit).map(|share| (leaf, share)));
-        }
-        fold.number(&of, &images)?;
-        fold.hold(boundary);
-        Some(fold)
+        let share_of_cell =
+            |(k, leaf): (usize, usize)| Some((leaf, part.share(leaf, images.iter().map(|image| image.leaves[k]).collect())?));
+        let cells = plate.grid.leaves().enumerate().filter_map(share_of_cell).collect();
+        let share_of_segment = |k: usize| part.share(k, images.iter().map(|image| image.segments[k] as usize).collect());
+        let segments = (0..segments.len()).map(share_of_segment).collect();
+        (part.cells, part.segments) = (cells, segments);
+        part.number(&of, &images);
+        part.hold(boundary);
+        part
     }
 
     /// Share in the part of the first of an orbit; of others stand the first.
@@ -119,7 +128,7 @@ impl Fold {
         (orbit[0] == own).then_some(orbit.len() as f64 / self.parts() as f64)
     }
 
-    fn number(&mut self, of: &Unknowns, images: &[Image]) -> Option<()> {
+    fn number(&mut self, of: &Unknowns, images: &[Image]) {
         for node in 0..self.nodes.len() {
             let next = self.first[node];
             if self.nodes[node] as usize != node {
@@ -144,7 +153,6 @@ impl Fold {
             let is_own = |(unknown, place): (u32, u32)| self.unknowns[unknown as usize] == (place, 1.0);
             self.plain[node] = self.nodes[node] as usize == node && own.all(is_own);
         }
-        self.unknowns.iter().all(|unknown| unknown.0 != u32::MAX).then_some(())
     }
 
     /// Holds what the supports of the plate do, rigid motions that they leave and that are symmetric, and unknowns that vanish.
@@ -155,15 +163,19 @@ impl Fold {
         };
         let mut held: Vec<Square> = boundary.held.iter().map(of_support).filter(|square| !square.unknowns.is_empty()).collect();
         let pinned = match self.flips[..] {
+            [] => boundary.pins,
             // A mirror leaves a displacement along its line, half a turn a turn.
-            [Flip { signs, .. }] => boundary.pins[signs.iter().position(|sign| *sign > 0.0).unwrap_or(2)],
-            _ => None,
+            [Flip { signs, .. }] => {
+                let free = signs.iter().position(|sign| *sign > 0.0).unwrap_or(2);
+                [0, 1, 2].map(|pin| boundary.pins[pin].filter(|_| pin == free))
+            }
+            _ => [None; 3],
         };
         let mut stands = vec![false; self.first[self.first.len() - 1] as usize];
         self.unknowns.iter().filter(|unknown| unknown.1 != 0.0).for_each(|unknown| stands[unknown.0 as usize] = true);
         let vanishing = (0..).zip(stands).filter(|(_, stands)| !stands).map(|(unknown, _)| unknown);
-        let pinned = pinned.map(|unknown| self.unknowns[unknown as usize].0);
-        held.extend(pinned.into_iter().chain(vanishing).map(|unknown| Square::spring(unknown, boundary.spring)));
+        let pinned = pinned.iter().flatten().map(|unknown| self.unknowns[*unknown as usize].0);
+        held.extend(pinned.chain(vanishing).map(|unknown| Square::spring(unknown, boundary.spring)));
         self.held = held;
     }
 
@@ -194,9 +206,7 @@ impl Fold {
             let (of, sign) = self.unknowns[unknown as usize];
             (of, sign * weight)
         };
-        let mut terms: Vec<(u32, f64)> = weights.map(of_standing).filter(|term| term.1 != 0.0).collect();
-        terms.sort_by_key(|term| term.0);
-        terms.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|term| term.1).sum())).collect()
+        summed(weights.map(of_standing).filter(|term| term.1 != 0.0).collect())
     }
 
     /// Forces on the unknowns that stand for all, `Tᵀ f` of one part.
@@ -213,13 +223,6 @@ impl Fold {
         self.unknowns.iter().map(|&(of, sign)| sign * v[of as usize]).collect()
     }
 
-    /// Of every segment its share in the part, none of one for which another stands; `None` where one has no image.
-    pub fn shares(&self, segments: &[[Point; 2]]) -> Option<Vec<Option<f64>>> {
-        let images: Vec<Vec<u32>> = self.flips.iter().map(|flip| partners_of_lines(segments, *flip)).collect::<Option<_>>()?;
-        let share = |own: usize| self.share(own, images.iter().map(|image| image[own] as usize).collect());
-        Some((0..segments.len()).map(share).collect())
-    }
-
     /// A segment and its images.
     pub fn orbit(&self, [a, b]: [Point; 2]) -> Vec<[Point; 2]> {
         let mut orbit = vec![[a, b]];
@@ -234,18 +237,35 @@ impl Fold {
     }
 }
 
-/// The node of an orbit that stands for it: the lowest, of those the leftmost, as of cells.
-fn standing(of: &Unknowns, images: &[Image], node: u32) -> u32 {
-    images.iter().map(|image| image.nodes[node as usize]).fold(node, |a, b| {
-        let ([xa, ya], [xb, yb]) = (of.at[a as usize], of.at[b as usize]);
-        let is_level = (ya - yb).abs() <= 2.0 * of.equal[node as usize];
-        if if is_level { xb < xa } else { yb < ya } { b } else { a }
-    })
+/// Of every node that which stands for it: the lowest of its images, of those as low within `level`, m, the leftmost, as of cells.
+fn standing(of: &Unknowns, images: &[Image], level: f64) -> Vec<u32> {
+    let row = |node: u32| (of.at[node as usize][1] / level).round();
+    let mut order: Vec<u32> = (0..of.at.len() as u32).collect();
+    let left = |node: u32| of.at[node as usize][0];
+    order.sort_by(|&a, &b| row(a).total_cmp(&row(b)).then(left(a).total_cmp(&left(b))));
+    let mut standing = vec![u32::MAX; order.len()];
+    for node in order {
+        if standing[node as usize] == u32::MAX {
+            standing[node as usize] = node;
+            images.iter().for_each(|image| standing[image.nodes[node as usize] as usize] = node);
+        }
+    }
+    standing
+}
+
+impl<'a> Unknowns<'a> {
+    fn new(plate: &'a Discretisation, grips: &[Point], size: f64) -> Self {
+        let mut equal: Vec<f64> = plate.nodes.spacing.iter().map(|spacing| EQUAL * spacing).collect();
+        equal.extend(grips.iter().map(|_| EQUAL * size));
+        let of_grips = (1..=grips.len()).map(|grip| (plate.unknowns() + grip * UNKNOWNS_OF_GRIP) as u32);
+        let first = plate.first.iter().copied().chain(of_grips).collect();
+        Unknowns { plate, at: plate.nodes.at.iter().chain(grips).copied().collect(), equal, first }
+    }
 }
 
 impl<'a> Image<'a> {
-    /// `None` where a node, a side, a crack or a tip has no image.
-    fn new(of: &'a Unknowns<'a>, flip: Flip) -> Option<Self> {
+    /// `None` where a node, a tip, a cell, a side or a crack has no image.
+    fn new(of: &'a Unknowns<'a>, flip: Flip, segments: &[[Point; 2]]) -> Option<Self> {
         let plate = of.plate;
         let tips: Vec<Point> = plate.axes.iter().map(|axes| axes.at).collect();
         let tips = partners(&tips, flip, |tip| EQUAL * plate.axes[tip].spacing)?;
@@ -253,30 +273,25 @@ impl<'a> Image<'a> {
             plate.obstacles.cuts.iter().flat_map(|cut| cut.points.windows(2)).map(|piece| [piece[0], piece[1]]).collect();
         partners_of_lines(&cuts, flip)?;
         partners_of_lines(&plate.sides, flip)?;
+        let segments = partners_of_lines(segments, flip)?;
+        let leaves = plate.grid.leaves().map(|leaf| image_of_leaf(&plate.grid, flip, leaf)).collect::<Option<_>>()?;
         // Grips are nodes of their own.
         let (inner, grips) = of.at.split_at(plate.nodes.at.len());
         let mut nodes = partners(inner, flip, |node| of.equal[node])?;
-        let of_grips = partners(grips, flip, |_| of.equal[of.equal.len() - 1])?;
+        let of_grips = partners(grips, flip, |grip| of.equal[inner.len() + grip])?;
         let own = |node: usize| &plate.enriched[node];
         let is_alike = |node: usize| {
             let other = nodes[node] as usize;
             let [a, b] = [node, other].map(|node| plate.nodes.spacing[node]);
             let carries = |tip: &u32| own(other).contains(&tips[*tip as usize]);
-            (a - b).abs() <= EQUAL * a && own(node).len() == own(other).len() && own(node).iter().all(carries)
+            let is_returned = nodes[other] as usize == node && (a - b).abs() <= EQUAL * a;
+            is_returned && own(node).len() == own(other).len() && own(node).iter().all(carries)
         };
         if !(0..inner.len()).all(is_alike) {
             return None;
         }
         nodes.extend(of_grips.iter().map(|grip| grip + inner.len() as u32));
-        Some(Image { of, flip, nodes, tips })
-    }
-
-    /// The cell that is the image of a cell.
-    fn leaf(&self, leaf: usize) -> Option<usize> {
-        let grid = &self.of.plate.grid;
-        let (at, size) = (self.flip.image(grid.middle(leaf)), grid.spacing(leaf));
-        let other = grid.leaf(at);
-        (grid.spacing(other) == size && distance(grid.middle(other), at) <= EQUAL * size).then_some(other)
+        Some(Image { of, flip, nodes, tips, leaves, segments })
     }
 
     /// The image of an unknown of a node, and the sign that it has there.
@@ -324,6 +339,13 @@ impl<'a> Image<'a> {
         };
         self.is_image(&forces(&some), &forces(&image))
     }
+}
+
+/// The cell that is the image of a cell.
+fn image_of_leaf(grid: &Grid, flip: Flip, leaf: usize) -> Option<usize> {
+    let (at, size) = (flip.image(grid.middle(leaf)), grid.spacing(leaf));
+    let other = grid.leaf(at);
+    (grid.spacing(other) == size && distance(grid.middle(other), at) <= EQUAL * size).then_some(other)
 }
 
 /// Of every point the one at its image; `None` where one has none.
