@@ -31,9 +31,9 @@ impl Source {
     }
 
     fn divides(&self, middle: Point, size: f64) -> bool {
-        // What is on a limit is beyond it, on both sides of a source alike.
-        let nearly = size * (1.0 - 1e-9);
-        self.spacing < nearly && (distance(middle, self.at) - self.radius).abs() < self.reach * nearly
+        // Cells on the limit are within, on both sides of a source alike.
+        let away = (distance(middle, self.at) - self.radius).abs();
+        self.spacing < size * (1.0 - ON_BORDER) && away < self.reach * size * (1.0 + ON_BORDER)
     }
 }
 
