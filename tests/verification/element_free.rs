@@ -225,8 +225,9 @@ fn straight_lines_between_rows_are_the_curve() {
     assert!(all < 2e-3 && solved > 2.0 * all, "{all}, {solved}");
 }
 
-/// A plate that is its own image is solved by a part of it: with the same nodes under a residual stress of 3 kPa that is not, and so solved whole,
-/// K, work and contact are the same. Points on lines of nodes see round a tip on one side by round-off, which is 5e-4 of K.
+/// A plate that is its own image is solved by a part of it: with the same nodes under a residual stress of next to nothing that is not, and so
+/// solved whole, K, work and contact are the same to 1e-9. On slant cracks and at holes some points are level with a corner, past which a whole
+/// plate sees them on one side alone, by round-off, which is 7e-5 of K.
 #[test]
 fn a_part_of_a_symmetric_plate_stands_for_it() {
     let square = "width_mm = 100\nlength_mm = 100\n";
@@ -238,33 +239,36 @@ fn a_part_of_a_symmetric_plate_stands_for_it() {
     let moved = "kind = \"displacement\"\ndisplacement_max_mm = 0.05";
     let clamped = "kind = \"single_edge_tension\"\nwidth_mm = 50\nlength_mm = 100\ncrack_length_mm = 20\nends = \"clamped\"\n";
     let residual = "-90 * exp(-(x/20)^2)";
-    // Name, case, sign of the load, parts, and whether flanks are in contact.
+    // Name, case, sign of the load, parts, whether flanks are in contact, and by how much whole plates are off, over K.
+    let (same, level) = (1e-9, 1e-4);
     let rows = [
-        ("centre crack", plate(&[centre]), 1.0, 4, false),
-        ("overlap", plate(&[centre]), -1.0, 4, true),
-        ("slant crack", plate(&[slant]), 1.0, 2, false),
-        ("flanks that slide", plate(&[slant]), -1.0, 2, true),
-        ("bent crack", with("cracks = [{ path_mm = [[-12, -5], [-8, 0], [8, 0], [12, 5]] }]"), 1.0, 2, false),
-        ("edge crack", plate(&[[[-50.0, 0.0], [-30.0, 0.0]]]), 1.0, 2, false),
-        ("hole", with(&format!("holes = [{{ x_mm = 0, y_mm = 0, diameter_mm = 10 }}]\n{at_hole}")), 1.0, 4, false),
-        ("two cracks", plate(&[[[-25.0, -4.0], [-8.0, -4.0]], [[8.0, 4.0], [25.0, 4.0]]]), 1.0, 2, false),
-        ("held below", plate(&[high]) + held, 1.0, 2, false),
-        ("moved", plate(&[high]).replace("stress_max_mpa = 60", moved) + held, 1.0, 2, false),
+        ("centre crack", plate(&[centre]), 1.0, 4, false, same),
+        ("overlap", plate(&[centre]), -1.0, 4, true, same),
+        ("slant crack", plate(&[slant]), 1.0, 2, false, level),
+        ("flanks that slide", plate(&[slant]), -1.0, 2, true, level),
+        ("bent crack", with("cracks = [{ path_mm = [[-12, -5], [-8, 0], [8, 0], [12, 5]] }]"), 1.0, 2, false, level),
+        ("edge crack", plate(&[[[-50.0, 0.0], [-30.0, 0.0]]]), 1.0, 2, false, same),
+        ("hole", with(&format!("holes = [{{ x_mm = 0, y_mm = 0, diameter_mm = 10 }}]\n{at_hole}")), 1.0, 4, false, level),
+        ("two cracks", plate(&[[[-25.0, -4.0], [-8.0, -4.0]], [[8.0, 4.0], [25.0, 4.0]]]), 1.0, 2, false, same),
+        ("held below", plate(&[high]) + held, 1.0, 2, false, same),
+        ("moved", plate(&[high]).replace("stress_max_mpa = 60", moved) + held, 1.0, 2, false, same),
         (
             "clamped",
             plate(&[centre]).replace("kind = \"plate\"", clamped).replace(square, "").replace(&cracks(&[centre]), ""),
             1.0,
             2,
             false,
+            same,
         ),
-        ("residual stress", plate(&[centre]), 1.0, 4, true),
-        ("one of its own", plate(&[[[-20.0, 5.0], [10.0, 3.0]]]), 1.0, 1, false),
+        ("residual stress", plate(&[centre]), 1.0, 4, true, level),
+        ("one of its own", plate(&[[[-20.0, 5.0], [10.0, 3.0]]]), 1.0, 1, false, same),
     ];
-    for (name, text, sign, parts, is_in_contact) in rows {
+    for (name, text, sign, parts, is_in_contact, most) in rows {
         let case = case(&text, "").unwrap_or_else(|error| panic!("{name}: {error}"));
         let (plate, far) = nodes(&case, 20.0, BASES[0]);
-        let [part, whole] = ["0", "1e-4 * (x + 30)"].map(|other| {
-            let own = if name == "residual stress" { residual } else { "0" };
+        let [part, whole] = [0.0, 1.0].map(|times| {
+            let (own, size) = if name == "residual stress" { (residual, 1e-4) } else { ("0", 1e-9) };
+            let other = format!("{} * (x + 30)", times * size);
             let formula = format!("loading.residual_stress_mpa={{ y = \"{own}\", xy = \"{other}\" }}");
             let stressed =
                 case_of(&cracked_plate(100.0, 100.0, &[centre]), &[formula, "fatigue.walker_gamma=1".to_owned()]).unwrap();
@@ -279,17 +283,17 @@ fn a_part_of_a_symmetric_plate_stands_for_it() {
         let largest = whole.0.iter().flat_map(|tip| tip.factors).fold(0.0_f64, |largest, k| largest.max(k.abs()));
         for (of_part, of_whole) in part.0.iter().zip(&whole.0) {
             let off = (0..2).map(|mode| (of_part.factors[mode] - of_whole.factors[mode]).abs()).fold(0.0, f64::max);
-            assert!(off < 5e-4 * largest, "{name}: {of_part:?}, {of_whole:?}");
+            assert!(off < most * largest, "{name}: {of_part:?}, {of_whole:?}");
         }
-        let same = |a: f64, b: f64| (a - b).abs() <= 1e-4 * b.abs();
-        assert!(same(part.1.area, whole.1.area) && same(part.1.whole.work, whole.1.whole.work), "{name}");
+        let is_near = |a: f64, b: f64| (a - b).abs() <= most * b.abs();
+        assert!(is_near(part.1.area, whole.1.area) && is_near(part.1.whole.work, whole.1.whole.work), "{name}");
         let pressure = |loaded: &Loaded| loaded.pressed.iter().map(|pressed| pressed.pressure).fold(0.0, f64::max);
         let (loads, of_whole) = ([&part.1, &whole.1].map(|of| std::iter::once(&of.whole).chain(&of.lower)), &whole.1.lower);
         assert_eq!(part.1.lower.len(), of_whole.len(), "{name}");
         let [of_part, of_whole] = loads;
         for (of_part, of_whole) in of_part.zip(of_whole) {
             assert_eq!(of_part.pressed.len(), of_whole.pressed.len(), "{name}");
-            assert!((pressure(of_part) - pressure(of_whole)).abs() <= 1e-3 * pressure(of_whole), "{name}");
+            assert!((pressure(of_part) - pressure(of_whole)).abs() <= 10.0 * most * pressure(of_whole), "{name}");
         }
         assert_eq!(!part.1.whole.pressed.is_empty(), is_in_contact, "{name}");
     }
