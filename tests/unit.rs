@@ -24,6 +24,7 @@ mod named_plates;
 mod pictures;
 mod plate_band;
 mod population;
+mod preamble;
 mod rate_tables;
 mod rates;
 mod report;
