@@ -1,4 +1,5 @@
-//! Chromium without a screen, driven through ChromeDriver by the WebDriver protocol (W3C 2018), where the machine has both.
+//! A browser without a screen, driven by the WebDriver protocol (W3C 2018), where the machine has it: Chromium, or Firefox where
+//! `PERILIFE_TESTS_BROWSER` is `firefox`.
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -9,12 +10,36 @@ use ureq::Agent;
 
 use crate::support::installed::{free_ports, or_skipped};
 
-const DRIVER: &str = "/usr/bin/chromedriver";
-const BROWSER: &str = "/usr/bin/chromium";
 const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A browser and where its parts are.
+struct Kind {
+    name: &'static str,
+    binaries: &'static [&'static str],
+    drivers: &'static [&'static str],
+    driver_arguments: &'static [&'static str],
+    install: &'static str,
+}
+
+const CHROMIUM: Kind = Kind {
+    name: "chromium",
+    binaries: &["/usr/bin/chromium"],
+    drivers: &["/usr/bin/chromedriver"],
+    driver_arguments: &[],
+    install: "apt-get install chromium chromium-driver",
+};
+/// Themes and narrow windows are set from the browser's own context, which has to be allowed.
+const FIREFOX: Kind = Kind {
+    name: "firefox",
+    binaries: &["/usr/bin/firefox", "/usr/bin/firefox-esr"],
+    drivers: &["/usr/bin/geckodriver", "/usr/local/bin/geckodriver"],
+    driver_arguments: &["--allow-system-access"],
+    install: "apt-get install firefox-esr; cargo install geckodriver --root /usr/local",
+};
 
 /// A browser with one window; ended when dropped.
 pub struct Browser {
+    kind: &'static Kind,
     driver: Child,
     session: String,
     agent: Agent,
@@ -24,26 +49,34 @@ pub struct Browser {
 impl Browser {
     /// Starts one, where the machine has it.
     pub fn start() -> Option<Browser> {
-        let is_there = Path::new(DRIVER).is_file() && Path::new(BROWSER).is_file();
-        let missing = "no browser is installed (Debian: apt-get install chromium chromium-driver)".to_owned();
-        or_skipped("chromium", is_there.then_some(()).ok_or(missing))?;
+        let is_firefox = std::env::var("PERILIFE_TESTS_BROWSER").is_ok_and(|name| name == FIREFOX.name);
+        let kind = if is_firefox { &FIREFOX } else { &CHROMIUM };
+        let there = |paths: &[&'static str]| paths.iter().copied().find(|path| Path::new(path).is_file());
+        let parts = there(kind.binaries).zip(there(kind.drivers));
+        let (binary, driver) = or_skipped(kind.name, parts.ok_or(format!("not installed ({})", kind.install)))?;
         let [port] = free_ports();
         let quiet = || Stdio::null();
-        let driver =
-            Command::new(DRIVER).arg(format!("--port={port}")).stdin(quiet()).stdout(quiet()).stderr(quiet()).spawn().unwrap();
+        let mut driver = Command::new(driver);
+        driver.arg(format!("--port={port}")).args(kind.driver_arguments).stdin(quiet()).stdout(quiet()).stderr(quiet());
+        let driver = driver.spawn().unwrap();
         let agent: Agent = Agent::config_builder().http_status_as_error(false).build().into();
         let profile = tempfile::tempdir().unwrap();
-        let mut browser = Browser { driver, session: format!("http://127.0.0.1:{port}"), agent, _profile: profile };
+        let mut browser = Browser { kind, driver, session: format!("http://127.0.0.1:{port}"), agent, _profile: profile };
         let data = format!("--user-data-dir={}", browser._profile.path().display());
         let arguments = [
             "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
             "--disable-component-update", "--disable-sync", "--hide-scrollbars", &data,
         ];
-        let wanted = json!({ "capabilities": { "alwaysMatch": {
-            "browserName": "chrome",
-            "goog:chromeOptions": { "binary": BROWSER, "args": arguments },
-            "goog:loggingPrefs": { "browser": "ALL" },
-        }}});
+        let always = if is_firefox {
+            json!({ "browserName": "firefox", "moz:firefoxOptions": { "binary": binary, "args": ["-headless"] } })
+        } else {
+            json!({
+                "browserName": "chrome",
+                "goog:chromeOptions": { "binary": binary, "args": arguments },
+                "goog:loggingPrefs": { "browser": "ALL" },
+            })
+        };
+        let wanted = json!({ "capabilities": { "alwaysMatch": always } });
         let begun = Instant::now();
         let session = loop {
             match browser.agent.post(format!("{}/session", browser.session)).send_json(&wanted) {
@@ -55,6 +88,18 @@ impl Browser {
         let id = session["value"]["sessionId"].as_str().unwrap_or_else(|| panic!("{session}"));
         browser.session = format!("{}/session/{id}", browser.session);
         Some(browser)
+    }
+
+    fn is_firefox(&self) -> bool {
+        self.kind.name == FIREFOX.name
+    }
+
+    /// What a script gives in the context of Firefox itself.
+    fn run_inside(&self, script: &str) -> Value {
+        self.command("moz/context", &json!({ "context": "chrome" }));
+        let given = self.run(script);
+        self.command("moz/context", &json!({ "context": "content" }));
+        given
     }
 
     #[track_caller]
@@ -161,29 +206,67 @@ impl Browser {
         self.command("actions", &json!({ "actions": [pointer] }));
     }
 
-    /// Size of the window and which colours the system prefers.
+    /// A command of the Chrome DevTools protocol.
+    fn devtools(&self, command: &str, params: &Value) -> Value {
+        self.command("goog/cdp/execute", &json!({ "cmd": command, "params": params }))
+    }
+
+    /// Size of the page and which colours the system prefers.
     pub fn look(&self, width: u32, height: u32, scheme: &str) {
-        let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
-        let cdp = |command: &str, params: Value| self.command("goog/cdp/execute", &json!({ "cmd": command, "params": params }));
-        cdp("Emulation.setDeviceMetricsOverride", metrics);
+        if self.is_firefox() {
+            // A window is never below 500 px, the page in it can be.
+            self.command("window/rect", &json!({ "width": width, "height": height + 200 }));
+            let dark = u32::from(scheme != "dark");
+            self.run_inside(&format!(
+                "Services.prefs.setIntPref('layout.css.prefers-color-scheme.content-override', {dark});
+                 const page = Services.wm.getMostRecentWindow('navigator:browser').gBrowser.selectedBrowser;
+                 Object.assign(page.style, {{ minWidth: '0', maxWidth: '{width}px', minHeight: '0', maxHeight: '{height}px' }})"
+            ));
+            return self.until(&format!("innerWidth === {width} && matchMedia('(prefers-color-scheme: {scheme})').matches"));
+        }
+        self.devtools(
+            "Emulation.setDeviceMetricsOverride",
+            &json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false }),
+        );
         let preferred = json!({ "features": [{ "name": "prefers-color-scheme", "value": scheme }] });
-        cdp("Emulation.setEmulatedMedia", preferred);
+        self.devtools("Emulation.setEmulatedMedia", &preferred);
     }
 
     pub fn download_into(&self, folder: &Path) {
-        let params = json!({ "behavior": "allow", "downloadPath": folder });
-        self.command("goog/cdp/execute", &json!({ "cmd": "Browser.setDownloadBehavior", "params": params }));
+        if self.is_firefox() {
+            self.run_inside(&format!(
+                "Services.prefs.setIntPref('browser.download.folderList', 2);
+                 Services.prefs.setStringPref('browser.download.dir', {})",
+                json!(folder)
+            ));
+            return;
+        }
+        self.devtools("Browser.setDownloadBehavior", &json!({ "behavior": "allow", "downloadPath": folder }));
     }
 
     /// The whole page as PNG.
     pub fn picture(&self) -> Vec<u8> {
-        let params = json!({ "captureBeyondViewport": true });
-        let shot = self.command("goog/cdp/execute", &json!({ "cmd": "Page.captureScreenshot", "params": params }));
+        if self.is_firefox() {
+            let mut shot = self.agent.get(format!("{}/moz/screenshot/full", self.session)).call().unwrap();
+            let shot = shot.body_mut().with_config().limit(1 << 28).read_json::<Value>().unwrap();
+            return base64(shot["value"].as_str().unwrap());
+        }
+        let shot = self.devtools("Page.captureScreenshot", &json!({ "captureBeyondViewport": true }));
         base64(shot["data"].as_str().unwrap())
     }
 
-    /// What the page had to complain about.
+    /// What the page had to complain about since it was asked before.
     pub fn complaints(&self) -> Vec<String> {
+        if self.is_firefox() {
+            let told = self.run_inside(
+                "const told = Services.console.getMessageArray().filter((told) => told instanceof Ci.nsIScriptError)
+                    .filter((told) => !(told.flags & Ci.nsIScriptError.warningFlag) && told.sourceName.startsWith('http'))
+                    .map((told) => told.errorMessage);
+                 Services.console.reset();
+                 return told",
+            );
+            return told.as_array().unwrap().iter().map(|message| message.as_str().unwrap_or_default().to_owned()).collect();
+        }
         let log = self.command("se/log", &json!({ "type": "browser" }));
         let lines = log.as_array().unwrap().iter().filter(|line| line["level"] != "INFO" && line["level"] != "DEBUG");
         lines.map(|line| line["message"].as_str().unwrap_or_default().to_owned()).collect()

@@ -14,8 +14,8 @@ use crate::support::server::Server;
 /// From npm's registry, once for all runs; not among the files of this project.
 const AXE: &str = "axe-core@4.14.1";
 /// Rules that are broken, and where.
-const FOUND: &str = "const { violations } = await axe.run(document, { resultTypes: ['violations'] });
-    return violations.map((rule) => `${rule.id}: ${rule.nodes.map((node) => node.html.slice(0, 120)).join(' | ')}`);";
+const FOUND: &str = "return axe.run(document, { resultTypes: ['violations'] }).then(({ violations }) => violations
+    .map((rule) => `${rule.id}: ${rule.nodes.map((node) => node.html.slice(0, 120)).join(' | ')}`))";
 const READINGS: &str = "specimen,cycles,crack_length_mm\nA,0,9\nA,30000,10.5\nA,55000,12.4\nA,72000,14.5\nA,86000,17\nA,96000,19.8\n\
     A,104000,23\nB,0,9\nB,31000,10.5\nB,57000,12.4\nB,75000,14.5\nB,89000,17\nB,99000,19.8\nB,107000,23\n";
 const TEST: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\ncrack_length_mm = 9\n\
