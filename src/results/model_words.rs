@@ -218,8 +218,7 @@ pub fn loading(case: &Case) -> String {
         if loading.parallel_ratio == 0.0 { String::new() } else { format!(", {} of it on the sides", loading.parallel_ratio) };
     let bent = specimen.part_through.map_or(0.0, |flaw| flaw.bending_ratio);
     let bending = if bent == 0.0 { String::new() } else { format!(", bending of {} of it at the face", short(bent)) };
-    let residual =
-        loading.residual.as_ref().map(|residual| format!(", {} = {}", residual.key(), residual.words())).unwrap_or_default();
+    let residual = loading.residual.as_ref().map(|residual| format!(", {}", residual.described())).unwrap_or_default();
     match &loading.spectrum {
         Some(spectrum) => {
             let [low, high] = spectrum.ratios.map(short);

@@ -66,6 +66,17 @@ fn no_more_of_a_model_than_a_scene_needs() {
     }
 }
 
+#[test]
+fn a_notch_root_beside_a_crack_stays_and_is_named() {
+    let slot = "kind = \"plate\"\nnotches = [{ from_mm = [-10, 0], to_mm = [10, 0], width_mm = 2 }]\ncracks = [{ from_mm = [10, 0], to_mm = [13, 0] }]";
+    let [of_crack, of_bonds] = [case(slot, &[]), case(slot, &["fatigue.driver=bond_strain"])];
+    let named = |case: &Case| {
+        case.warnings.iter().filter(|message| message.contains("cracks: none starts at the notch root (-10.0000, 0")).count()
+    };
+    assert_eq!((of_crack.specimen.tips.len(), named(&of_crack)), (1, 1), "{:?}", of_crack.warnings);
+    assert_eq!((of_bonds.specimen.tips.len(), named(&of_bonds)), (2, 0));
+}
+
 /// The formula of three rollers is for a/W of 0.25 and more; that of pure bending holds for all short cracks.
 #[test]
 fn a_formula_is_taken_within_its_range() {

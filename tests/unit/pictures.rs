@@ -197,7 +197,7 @@ const CASE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 100\nlength_mm = 20
 
 #[test]
 fn everything_of_the_specimen_is_drawn() {
-    let case = Case::from_toml(CASE, "a < b & c", std::path::Path::new(""), &[]).unwrap();
+    let case = Case::from_toml(CASE, "a < b & c", std::path::Path::new(""), &["fatigue.driver=bond_strain".to_owned()]).unwrap();
     let svg = specimen_svg(&case);
     assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n") && svg.contains("a &lt; b &amp; c"));
     // Three tips, one dot in the legend.

@@ -5,8 +5,10 @@ use std::path::Path;
 
 use perilife_growth::case::Case;
 use perilife_growth::cracks::initial_tips;
+use perilife_growth::nodes::NodePlate;
 use perilife_growth::points::PointPlate;
 use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
+use perilife_plate::loading::pieces::load_pieces;
 use perilife_plate::specimen::handbook::handbook;
 use perilife_study::cases::by_name;
 
@@ -240,5 +242,34 @@ fn a_displacement_yields_the_section_by_its_load() {
     for (share, is_broken) in [(0.98, false), (1.02, true)] {
         let done = moved(share * yields_at);
         assert_eq!(done.stop == StopReason::NetSectionYield && done.curve.len() == 1, is_broken, "{share}: {:?}", done.stop);
+    }
+}
+
+/// A load on a side into which a notch opens has its resultant and moment on the material beside the mouth, on nodes as on points; stress along
+/// the crack does not open it.
+#[test]
+fn a_load_over_the_mouth_of_a_notch() {
+    let loading = "stress_max_mpa = 60\nstress_parallel_ratio = -0.5";
+    let of = |notch: &str, model: &str| {
+        let plate = "kind = \"plate\"\nwidth_mm = 60\nlength_mm = 150\ncracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]";
+        case(&format!("{plate}\n{notch}"), loading, &[model])
+    };
+    let notched = |model| of("notches = [{ from_mm = [30, 34.6], to_mm = [21.5, 34.6], width_mm = 3 }]", model);
+    let [on_points, on_nodes] = ["model.spacing_mm=1", "model.method=element_free_galerkin"].map(notched);
+    let resultant = |case: &Case| {
+        let mut sum = [0.0; 3];
+        for piece in load_pieces(&case.specimen, 1e-3) {
+            let ([x, y], [fx, fy]) = (piece.facet.at, piece.force);
+            [fx.abs(), fy.abs(), x * fy - y * fx].into_iter().zip(&mut sum).for_each(|(part, sum)| *sum += part);
+        }
+        sum
+    };
+    let (given, whole) = (resultant(&on_points), resultant(&of("", "model.spacing_mm=1")));
+    assert!((0..2).all(|axis| (given[axis] / whole[axis] - 1.0).abs() < 1e-12), "{given:?} {whole:?}");
+    assert!(given[2].abs() < 1e-9 * whole[0], "{given:?}");
+    let nodes = initial_tips::<NodePlate>(&on_nodes).unwrap().tips;
+    for (node, [k_i, _, t]) in nodes.iter().zip(tips(&on_points)) {
+        let (factor, stress) = (node.factors.unwrap()[0] / 1e6, node.t_stress.unwrap() / 1e6);
+        assert!((factor / k_i - 1.0).abs() < 0.005 && (stress / t - 1.0).abs() < 0.02, "{factor} {k_i}, {stress} {t}");
     }
 }

@@ -29,7 +29,7 @@ pub fn pieces_of(load: &Load, specimen: &Specimen, spacing: f64) -> Vec<LoadPiec
             let traction = along(first, last, distance(from, facet.at) / distance(from, to));
             LoadPiece { facet: outward(specimen, facet, spacing), force: traction.map(|t| t * area) }
         };
-        return straight(from, to, spacing).map(piece).collect();
+        return off_mouths(straight(from, to, spacing).map(piece).collect(), specimen, spacing);
     }
     let Load::Pin { hole, direction, force, ref contact } = *load else { return Vec::new() };
     match (contact, &specimen.holes[hole]) {
@@ -37,6 +37,32 @@ pub fn pieces_of(load: &Load, specimen: &Specimen, spacing: f64) -> Vec<LoadPiec
         // Of a pin whose contact is not found yet nothing is known but its force.
         (_, hole) => bearing(hole, direction, contact.half_angle().unwrap_or(LOOSE_PIN), spacing, force),
     }
+}
+
+/// Loads of a side with their resultant and moment as they are, where holes and notches open into it: what would act on a mouth acts on the
+/// material at both ends of it.
+fn off_mouths(mut pieces: Vec<LoadPiece>, specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
+    let carries: Vec<bool> = pieces.iter().map(|piece| specimen.contains(behind(&piece.facet, spacing))).collect();
+    if !carries.contains(&true) {
+        return pieces;
+    }
+    for i in (0..pieces.len()).filter(|i| !carries[*i]) {
+        let LoadPiece { facet, force } = pieces[i];
+        let shares = match ((0..i).rev().find(|j| carries[*j]), (i..pieces.len()).find(|j| carries[*j])) {
+            (Some(a), Some(b)) => {
+                let [from, to] = [a, b].map(|end| pieces[end].facet.at);
+                let share = distance(from, facet.at) / distance(from, to);
+                [(a, 1.0 - share), (b, share)]
+            }
+            (one, other) => [(one.or(other).unwrap_or(i), 1.0), (i, 0.0)],
+        };
+        for (end, share) in shares {
+            pieces[end].force = [0, 1].map(|axis| pieces[end].force[axis] + share * force[axis]);
+        }
+    }
+    let mut carries = carries.into_iter();
+    pieces.retain(|_| carries.next() == Some(true));
+    pieces
 }
 
 /// What a pin does where it touches its hole, in pieces no longer than those of other rims.

@@ -115,6 +115,17 @@ impl ResidualStress {
         &self.words
     }
 
+    /// What stands above a plate: the formula with its units, or the file.
+    pub fn described(&self) -> String {
+        match &self.field {
+            Field::Formulas(_, [length, _]) => {
+                let units = if *length == MM { "MPa, x and y in mm" } else { "ksi, x and y in inch" };
+                format!("residual stress {} ({units})", self.words.trim_matches('"'))
+            }
+            Field::Line(..) | Field::Plane(_) => format!("residual stress of {}", self.words),
+        }
+    }
+
     /// The stress at a place, m; `None` where it is not known.
     fn known(&self, at: Point) -> Option<Components> {
         let stress = match &self.field {

@@ -1,6 +1,7 @@
 //! Cracks of a specimen: the lines that they are, which ends of them grow, and how long they are.
 
 use super::{Crack, CrackLine, LineEnd, Specimen, TipSeed};
+use perilife_base::units::place_mm;
 
 /// How crack length is read, see [`Specimen::crack_length`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,6 +107,17 @@ impl Specimen {
     /// Whether it has tips, and all of them are those of sharp cracks.
     pub fn has_sharp_tips(&self) -> bool {
         !self.tips.is_empty() && (0..self.tips.len()).all(|tip| self.line_end(tip).is_some())
+    }
+
+    /// Where there are sharp cracks, those alone grow by K: notch ends without a crack are no longer tips. Says of each that it stays.
+    pub fn leave_notch_ends(&mut self) -> Vec<String> {
+        if self.tips.iter().all(|tip| tip.from_slot) {
+            return Vec::new();
+        }
+        let ends = self.tips.extract_if(.., |tip| tip.from_slot);
+        let remedy = "draw one there, or let bonds start it with fatigue.driver = \"bond_strain\"";
+        let said = ends.map(|end| format!("cracks: none starts at the notch root {}; {remedy}", place_mm(end.position)));
+        said.collect()
     }
 
     /// Moves every tip, and the end of its crack with it, by its growth, m; negative growth makes a crack shorter. The
