@@ -194,10 +194,11 @@ fn closely_passed(specimen: &Specimen, lines: &[CrackLine]) -> Vec<String> {
     lines.iter().enumerate().flat_map(passed).collect()
 }
 
-/// Paths with their numbers; two that share an end, where no third comes, are one crack with a bend there. In a hole they do not meet.
+/// Paths with their numbers; two that share an end, where no third comes, are one crack with a bend there. On a rim and outside the material
+/// they do not meet: each has its own mouth.
 fn with_shared_ends_joined(specimen: &Specimen, paths: Vec<Vec<Point>>) -> Vec<(usize, Vec<Point>)> {
-    let is_in_hole = |at: Point| specimen.holes.iter().any(|hole| distance(at, hole.centre) < hole.radius - TOUCH);
-    let mut joined: Vec<(usize, Vec<Point>)> = parted_at_branches(paths);
+    let is_on_rim = |at: Point| distance_to_polygon(at, &specimen.outline) <= TOUCH || !specimen.has_point_at(at, TOUCH);
+    let mut joined: Vec<(usize, Vec<Point>)> = parted_at_branches(paths, is_on_rim);
     let is_same = |a: Point, b: Point| distance(a, b) < TOUCH;
     let ends = |path: &[Point]| [path[0], path[path.len() - 1]];
     loop {
@@ -205,7 +206,7 @@ fn with_shared_ends_joined(specimen: &Specimen, paths: Vec<Vec<Point>>) -> Vec<(
             let shared: Vec<Point> =
                 ends(&joined[i].1).into_iter().filter(|&a| ends(&joined[j].1).into_iter().any(|b| is_same(a, b))).collect();
             let [at] = shared[..] else { return None };
-            if is_in_hole(at) {
+            if is_on_rim(at) {
                 return None;
             }
             (joined.iter().filter(|(_, path)| passes(path, at)).count() == 2).then_some((i, j, at))
@@ -231,8 +232,8 @@ fn passes(path: &[Point], at: Point) -> bool {
     path.windows(2).any(|piece| distance_to_segment(at, piece[0], piece[1]) < TOUCH)
 }
 
-/// Paths with their numbers, parted at corners from which others branch: a branch is the end of each that meets there.
-fn parted_at_branches(paths: Vec<Vec<Point>>) -> Vec<(usize, Vec<Point>)> {
+/// Paths with their numbers, parted at corners from which others branch, and on a rim: a branch is the end of each that meets there.
+fn parted_at_branches(paths: Vec<Vec<Point>>, is_on_rim: impl Fn(Point) -> bool) -> Vec<(usize, Vec<Point>)> {
     let is_met = |own: usize, at: Point| {
         let mut others = paths.iter().enumerate().filter(|(other, _)| *other != own);
         others.any(|(_, path)| passes(path, at))
@@ -241,7 +242,7 @@ fn parted_at_branches(paths: Vec<Vec<Point>>) -> Vec<(usize, Vec<Point>)> {
     for (own, path) in paths.iter().enumerate() {
         let mut from = 0;
         for corner in 1..path.len() {
-            if corner + 1 == path.len() || is_met(own, path[corner]) {
+            if corner + 1 == path.len() || is_on_rim(path[corner]) || is_met(own, path[corner]) {
                 parted.push((own, path[from..=corner].to_vec()));
                 from = corner;
             }
