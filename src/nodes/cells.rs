@@ -142,6 +142,8 @@ pub fn quadrature(specimen: &Specimen, plate: &Discretisation, cells: &[(usize, 
             divided(specimen, grid, leaf, &near)
         };
         points.iter_mut().for_each(|point| point.area *= share);
+        // A piece may be divided at a corner that lies on one of its sides; on a crack, what has no area would be a side of its own.
+        points.retain(|point| point.area > 0.0);
         (!points.is_empty()).then_some((leaf, points))
     };
     cells.par_iter().filter_map(of_leaf).collect()
