@@ -113,7 +113,7 @@ fn a_run_taken_up_is_the_undisturbed_one() {
 }
 
 #[test]
-#[ignore = "long: three minutes"]
+#[ignore = "long: half a minute"]
 fn a_run_taken_up_is_the_undisturbed_one_in_every_scene() {
     taken_up("all");
 }
