@@ -1,6 +1,7 @@
 //! A browser without a screen, driven by the WebDriver protocol (W3C 2018), where the machine has it: Chromium, or Firefox where
 //! `PERILIFE_TESTS_BROWSER` is `firefox`.
 
+use std::cell::Cell;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -43,6 +44,8 @@ pub struct Browser {
     driver: Child,
     session: String,
     agent: Agent,
+    /// Clicks and fields filled.
+    pub actions: Cell<usize>,
     _profile: tempfile::TempDir,
 }
 
@@ -61,7 +64,14 @@ impl Browser {
         let driver = driver.spawn().unwrap();
         let agent: Agent = Agent::config_builder().http_status_as_error(false).build().into();
         let profile = tempfile::tempdir().unwrap();
-        let mut browser = Browser { kind, driver, session: format!("http://127.0.0.1:{port}"), agent, _profile: profile };
+        let mut browser = Browser {
+            kind,
+            driver,
+            session: format!("http://127.0.0.1:{port}"),
+            agent,
+            actions: Cell::new(0),
+            _profile: profile,
+        };
         let data = format!("--user-data-dir={}", browser._profile.path().display());
         let arguments = [
             "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
@@ -175,6 +185,7 @@ impl Browser {
     #[track_caller]
     pub fn click(&self, selector: &str) {
         self.see(selector);
+        self.actions.set(self.actions.get() + 1);
         let element = self.element(selector);
         self.command(&format!("element/{element}/click"), &json!({}));
     }
@@ -182,6 +193,7 @@ impl Browser {
     /// Types into a field, or gives the path of a file to one that takes files.
     #[track_caller]
     pub fn fill(&self, selector: &str, text: &str) {
+        self.actions.set(self.actions.get() + 1);
         let element = self.element(selector);
         if self.run(&format!("return document.querySelector({}).type", json!(selector))) != "file" {
             self.command(&format!("element/{element}/clear"), &json!({}));

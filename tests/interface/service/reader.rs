@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::time::Instant;
 
 use serde_json::{Value, json};
 
@@ -54,6 +55,42 @@ fn columns_that_nobody_knows_are_chosen_on_the_page() {
     // The test is checked together with them.
     page.until("!document.querySelector('.side').innerText.includes('Load measured data first')");
     picture(&page, "unknown_columns_chosen");
+}
+
+/// From the file of a laboratory to a report in print: 14 actions at most, of some four seconds of a practised hand each, beside what the program takes.
+#[test]
+fn a_file_becomes_a_report_in_few_actions() {
+    let Some(page) = Browser::start() else { return };
+    let (dir, service) = Server::alone(&["--jobs", "1"]);
+    let file = dir.path().join("panel_7.csv");
+    let rows =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration/al2024-t3/measured/virkler_median.csv"));
+    fs::write(&file, format!("W,152.4,mm\nB,2.54,mm\nR,0.2\n{}", rows.unwrap())).unwrap();
+    page.look(1280, 900, "light");
+    page.open(&service.url);
+    let begun = Instant::now();
+    page.click("#new-kinds a[href='#/measure']");
+    page.fill("#measured-input", file.to_str().unwrap());
+    page.see("[data-file='panel_7.csv']");
+    page.fill("#view-measure [data-key='specimen.length_mm']", "300");
+    page.fill("#view-measure [data-key='loading.stress_max_mpa']", "60.35");
+    page.see("#calibrate:not([disabled])");
+    page.click("#calibrate");
+    page.see("#job[data-job-state=succeeded]");
+    page.click("[data-action=report]");
+    for (key, value) in [("laboratory", "Lab North"), ("number", "R-7"), ("operator", "N. N."), ("reviewer", "M. M.")] {
+        page.fill(&format!("#report-dialog [data-key='report.{key}']"), value);
+    }
+    page.run("window.open = (address) => { window.opened = address; };");
+    page.click("[data-action=open-report]");
+    page.until("window.opened");
+    let opened = page.run("return window.opened").as_str().unwrap().to_owned();
+    page.open(&format!("{}{opened}", service.url));
+    let (actions, waited) = (page.actions.get() + 1, begun.elapsed().as_secs_f64());
+    println!("{actions} actions with that of printing, {waited:.1} s of the program and the driver");
+    assert!(actions <= 14, "{actions}");
+    let report = page.text("main");
+    assert!(["Lab North", "R-7", "N. N.", "M. M.", "152.4", "60.35"].iter().all(|words| report.contains(words)), "{report}");
 }
 
 #[test]
