@@ -71,7 +71,7 @@ impl Separator {
     fn cells(self, text: &str) -> usize {
         match self.character() {
             Some(character) => text.matches(character).count() + 1,
-            None => text.split_whitespace().count(),
+            None => words(text).count(),
         }
     }
 
@@ -79,9 +79,15 @@ impl Separator {
         let whole = text.trim();
         match self {
             Separator::Gap => whole.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect(),
-            _ => whole.split_whitespace().collect(),
+            _ => words(whole).collect(),
         }
     }
+}
+
+/// Words between blanks; no-break and thin ones separate thousands, never columns.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    let is_blank = |c: char| c.is_whitespace() && !['\u{a0}', '\u{202f}', '\u{2009}'].contains(&c);
+    text.split(is_blank).map(str::trim).filter(|word| !word.is_empty())
 }
 
 fn at_character(text: &str, character: char) -> StringRecord {
