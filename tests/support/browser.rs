@@ -33,7 +33,7 @@ const CHROMIUM: Kind = Kind {
 const FIREFOX: Kind = Kind {
     name: "firefox",
     binaries: &["/usr/bin/firefox", "/usr/bin/firefox-esr"],
-    drivers: &["/usr/bin/geckodriver", "/usr/local/bin/geckodriver"],
+    drivers: &["/usr/local/bin/geckodriver", "/usr/bin/geckodriver"],
     driver_arguments: &["--allow-system-access"],
     install: "apt-get install firefox-esr; cargo install geckodriver --root /usr/local",
 };
@@ -188,6 +188,15 @@ impl Browser {
         self.actions.set(self.actions.get() + 1);
         let element = self.element(selector);
         self.command(&format!("element/{element}/click"), &json!({}));
+    }
+
+    /// Clicks what opens a window; the address of that. A window in front would stop the charts of this one.
+    #[track_caller]
+    pub fn window_of(&self, selector: &str) -> String {
+        self.run("window.opened = null; window.open = (address) => { window.opened = address; };");
+        self.click(selector);
+        self.until("window.opened");
+        self.run("return window.opened").as_str().unwrap().to_owned()
     }
 
     /// Types into a field, or gives the path of a file to one that takes files.

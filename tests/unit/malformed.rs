@@ -187,6 +187,8 @@ fn try_file(seed: u64) -> bool {
 fn some_files_by_chance_are_read_or_refused() {
     let read = (0..200).filter(|&seed| try_file(seed)).count();
     assert!(read > 50, "only {read} of 200 files were read: too much is refused");
+    // Two rows with a no-break blank between thousands.
+    try_file(1771);
 }
 
 #[test]

@@ -181,15 +181,16 @@ fn panel(length: f64) -> String {
     format!("kind=\"middle_tension\"\nwidth_mm=90\nlength_mm=120\nthickness_mm=2\ncrack_length_mm={length}\n")
 }
 
-/// Compliance of the body with a straight cut of each length is inverted at the compliance of the grown crack.
-fn compared(runs: &[(&str, &[&str])]) {
+/// Compliance of the body with a straight cut of each length is inverted at the compliance of the grown crack. Runs by name, keys and error
+/// while the front takes its shape.
+fn compared(runs: &[(&str, &[&str], f64)]) {
     let cut: Vec<(f64, f64)> = (18..=32)
         .map(|a| {
             let case = point_case(&panel(f64::from(a)), &[BOND_STRAIN, "model.spacing_mm=1"]);
             (f64::from(a) * MM, loaded(&case, SolverKind::Multigrid).unwrap().work)
         })
         .collect();
-    for (name, set) in runs {
+    for (name, set, forming) in runs {
         let all = [&[BOND_STRAIN, "model.spacing_mm=1", "stop.crack_length_mm=30"], *set].concat();
         let run = predict(&point_case(&panel(20.0), &all), &Silent).unwrap();
         let by_compliance = |work: f64| {
@@ -200,7 +201,7 @@ fn compared(runs: &[(&str, &[&str])]) {
             let point = run.curve.iter().find(|point| point.crack_length >= target * MM).unwrap();
             let found = by_compliance(point.work);
             // In spacings of 1 mm: 0.114 (p = 4) and 0.078 while the front of a clean cut takes its shape, then 0.046.
-            let allowed = if target <= 22.0 { 0.12 } else { 0.05 };
+            let allowed = if target <= 22.0 { *forming } else { 0.05 };
             assert!((point.crack_length - found).abs() < allowed * MM, "{name}: {} and {}", point.crack_length / MM, found / MM);
         }
     }
@@ -209,5 +210,5 @@ fn compared(runs: &[(&str, &[&str])]) {
 #[test]
 fn a_grown_crack_is_as_long_as_its_compliance_says() {
     let exponents = [["fatigue.p=2", "stop.cycles_max=1e12"], ["fatigue.p=4", "stop.cycles_max=1e12"]];
-    compared(&[("clean cut", &[]), ("p = 2", &exponents[0]), ("p = 4", &exponents[1])]);
+    compared(&[("clean cut", &[], 0.1), ("p = 2", &exponents[0], 0.1), ("p = 4", &exponents[1], 0.12)]);
 }

@@ -117,11 +117,20 @@ fn the_strip_of_the_handbook_and_tables() {
     });
     std::fs::write(dir.path().join("grid.csv"), grid).unwrap();
     std::fs::write(dir.path().join("line.csv"), line).unwrap();
-    let of = |field: &str| {
+    let case = |field: &str| {
         let specimen = "kind = \"plate\"\nwidth_mm = 120\nlength_mm = 120\ncracks = [{ from_mm = [-12, 0], to_mm = [12, 0] }]";
         let loading = format!("stress_max_mpa = 100\nstress_ratio = 0\n{field}");
-        tips::<NodePlate>(&case_in(dir.path(), specimen, &loading, WALKER, &[NODES]).unwrap())
+        case_in(dir.path(), specimen, &loading, WALKER, &[NODES]).unwrap()
     };
+    // Units and file are named where the field is shown.
+    for (field, words) in [
+        ("residual_stress_mpa = \"60 - 2*x\"", "residual stress 60 - 2*x (megapascals, x and y in millimeters)"),
+        ("residual_stress_ksi = \"6 - x\"", "residual stress 6 - x (ksi, x and y in inch)"),
+        ("residual_stress_file = \"grid.csv\"", "residual stress of grid.csv"),
+    ] {
+        assert_eq!(case(field).loading.residual.unwrap().described(), words);
+    }
+    let of = |field: &str| tips::<NodePlate>(&case(field));
     let [by_formula, by_grid, by_line] =
         ["residual_stress = \"60 - 2*x + y\"", "residual_stress_file = \"grid.csv\"", "residual_stress_file = \"line.csv\""]
             .map(of);

@@ -8,6 +8,7 @@ use csv::StringRecord;
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
 use super::cells::{Fault, Row, Separator, whole_file};
+use super::numerals::GROUPING;
 use crate::cells::{CELLS_MAX, SMALLER, too_many};
 use crate::error::Result;
 
@@ -86,7 +87,7 @@ impl Separator {
 
 /// Words between blanks; no-break and thin ones separate thousands, never columns.
 fn words(text: &str) -> impl Iterator<Item = &str> {
-    let is_blank = |c: char| c.is_whitespace() && !['\u{a0}', '\u{202f}', '\u{2009}'].contains(&c);
+    let is_blank = |c: char| c == ' ' || c.is_whitespace() && !GROUPING.contains(&c);
     text.split(is_blank).map(str::trim).filter(|word| !word.is_empty())
 }
 

@@ -41,7 +41,7 @@ pub(super) enum Evidence {
 }
 
 /// Blanks and apostrophes that separate thousands.
-const GROUPING: [char; 7] = [' ', '\u{a0}', '\u{202f}', '\u{2009}', '\'', '\u{2019}', '\u{2d9}'];
+pub(super) const GROUPING: [char; 7] = [' ', '\u{a0}', '\u{202f}', '\u{2009}', '\'', '\u{2019}', '\u{2d9}'];
 
 /// Whether a cell is a number in some writing.
 pub fn is_number(cell: &str) -> bool {

@@ -3,7 +3,7 @@
 use toml::Value;
 
 use super::Method;
-use super::fatigue_keys::keys_of_bonds;
+use super::fatigue_keys::key_that_asks_for_bonds;
 use super::model_keys::telling_key;
 use perilife_base::input::{number_of, value_at};
 use perilife_laws::growth_law::GrowthLawKind;
@@ -36,11 +36,8 @@ pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loadin
         Some((key, method)) => return (method, format!("set by model.{key}")),
         None => {}
     }
-    if let Some(key) = keys_of_bonds().into_iter().find(|key| value_at(asked.fatigue, key).is_some()) {
+    if let Some(key) = key_that_asks_for_bonds(asked.fatigue) {
         return (Method::Peridynamics, format!("set by fatigue.{key}"));
-    }
-    if value_at(asked.fatigue, "driver").and_then(Value::as_str) == Some("bond_strain") {
-        return (Method::Peridynamics, "set by fatigue.driver".to_owned());
     }
     if !specimen.has_sharp_tips() {
         return (Method::Peridynamics, "a crack starts at a slot or notch".to_owned());

@@ -3,6 +3,7 @@
 use toml::{Table, Value};
 
 use super::Failure;
+use perilife_base::input::value_at;
 use perilife_base::keys::{OrNone, Section, intensity, key, number};
 use perilife_laws::growth_law::description::law_keys;
 use perilife_laws::initiation::SnLaw;
@@ -38,6 +39,12 @@ perilife_base::keys! {
 /// Keys of `[fatigue]` that belong to fatigue bonds.
 pub fn keys_of_bonds() -> Vec<&'static str> {
     FatigueKeys::KEYS.iter().filter(|key| key.only == Some(OF_BONDS)).map(|key| key.name).collect()
+}
+
+/// The key by which `[fatigue]` asks for bonds that fail by their own strain, if it does.
+pub(super) fn key_that_asks_for_bonds(fatigue: &Value) -> Option<&'static str> {
+    let is_driver = value_at(fatigue, "driver").and_then(Value::as_str) == Some("bond_strain");
+    keys_of_bonds().into_iter().find(|key| value_at(fatigue, key).is_some()).or(is_driver.then_some("driver"))
 }
 
 /// Takes the law out of the sections of a case that is to get another one, or needs none.

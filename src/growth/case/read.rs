@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::fatigue::StopKeys;
-use super::fatigue_keys::{FatigueKeys, keys_of_bonds};
+use super::fatigue_keys::{FatigueKeys, key_that_asks_for_bonds};
 use super::fleet::{Fleet, FleetKeys};
 use super::model_keys::{ModelKeys, on_nodes};
 use super::{
@@ -127,9 +127,7 @@ impl Case {
         let of_library = law_source::of_library(section, sections.required("material")?, specimen.thickness, folder)?;
         let (with_growth, growth_data) = of_library.unzip();
         let with_growth = with_growth.as_ref().unwrap_or(section);
-        let is_of_bonds = value_at(with_growth, "driver").and_then(Value::as_str) == Some("bond_strain")
-            || keys_of_bonds().into_iter().any(|key| value_at(with_growth, key).is_some());
-        if !is_of_bonds {
+        if key_that_asks_for_bonds(with_growth).is_none() {
             warnings.extend(specimen.leave_notch_ends());
         }
         let asked =

@@ -40,7 +40,7 @@ pub fn pieces_of(load: &Load, specimen: &Specimen, spacing: f64) -> Vec<LoadPiec
 }
 
 /// Loads of a side with their resultant and moment as they are, where holes and notches open into it: what would act on a mouth acts on the
-/// material at both ends of it.
+/// material at both ends of it; at a corner, which has one end, the moment is not kept.
 fn off_mouths(mut pieces: Vec<LoadPiece>, specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
     let carries: Vec<bool> = pieces.iter().map(|piece| specimen.contains(behind(&piece.facet, spacing))).collect();
     if !carries.contains(&true) {

@@ -115,11 +115,11 @@ impl ResidualStress {
         &self.words
     }
 
-    /// What stands above a plate: the formula with its units, or the file.
+    /// The formula with its units, or the file. Metric ones are spelled out: their symbols would be told as US ones, the formula as it is.
     pub fn described(&self) -> String {
         match &self.field {
             Field::Formulas(_, [length, _]) => {
-                let units = if *length == MM { "MPa, x and y in mm" } else { "ksi, x and y in inch" };
+                let units = if *length == MM { "megapascals, x and y in millimeters" } else { "ksi, x and y in inch" };
                 format!("residual stress {} ({units})", self.words.trim_matches('"'))
             }
             Field::Line(..) | Field::Plane(_) => format!("residual stress of {}", self.words),

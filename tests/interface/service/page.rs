@@ -290,12 +290,9 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.fill("#report-dialog [data-key='report.laboratory']", "Lab North");
     page.fill("#report-dialog [data-key='report.number']", "R-7");
     walk.look("15_report_dialog");
-    // A window in front would stop the charts of this one.
-    page.run("window.open = (address) => { window.opened = address; };");
-    page.click("[data-action=open-report]");
+    let opened = page.window_of("[data-action=open-report]");
     page.until("!document.querySelector('#report-dialog')");
     assert_eq!(service.get(&format!("/v1/predictions/{first}")).json()["report"]["laboratory"], "Lab North");
-    let opened = page.run("return window.opened").as_str().unwrap().to_owned();
     page.click("[data-part=further] [data-action=sensitivities]");
     page.see("[data-part=sensitivities] img:not([hidden])");
     // The form knows what else its run found.

@@ -81,10 +81,7 @@ fn a_file_becomes_a_report_in_few_actions() {
     for (key, value) in [("laboratory", "Lab North"), ("number", "R-7"), ("operator", "N. N."), ("reviewer", "M. M.")] {
         page.fill(&format!("#report-dialog [data-key='report.{key}']"), value);
     }
-    page.run("window.open = (address) => { window.opened = address; };");
-    page.click("[data-action=open-report]");
-    page.until("window.opened");
-    let opened = page.run("return window.opened").as_str().unwrap().to_owned();
+    let opened = page.window_of("[data-action=open-report]");
     page.open(&format!("{}{opened}", service.url));
     let (actions, waited) = (page.actions.get() + 1, begun.elapsed().as_secs_f64());
     println!("{actions} actions with that of printing, {waited:.1} s of the program and the driver");
