@@ -57,8 +57,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Cells over the box from `low` to `high`, m, of about the size `far`, halved as the sources ask; no more than `most` are halved
-    /// again.
+    /// Cells over the box from `low` to `high`, m, of about the size `far`, halved as the sources ask and until neighbors differ by one level; no
+    /// more than `most` are halved again.
     pub fn new([low, high]: [Point; 2], far: f64, sources: &[Source], most: usize) -> Self {
         let count = [0, 1].map(|i| ((high[i] - low[i]) / far).round().max(2.0) as i64);
         let size = [0, 1].map(|i| (high[i] - low[i]) / count[i] as f64);
@@ -70,22 +70,49 @@ impl Grid {
         let mut sources_of: Vec<Vec<u32>> = vec![(0..sources.len() as u32).collect()];
         let mut parents = vec![0; grid.cells.len()];
         while next < grid.cells.len() && grid.cells.len() <= most {
-            let Cell { level, place, .. } = grid.cells[next];
+            let level = grid.cells[next].level;
             let (middle, spacing) = (grid.middle(next), grid.spacing(next));
             let divides = |source: &&u32| level < LEVELS_MAX && sources[**source as usize].divides(middle, spacing);
             let dividing: Vec<u32> = sources_of[parents[next]].iter().filter(divides).copied().collect();
             if !dividing.is_empty() {
-                grid.cells[next].children = Some(grid.cells.len() as u32);
                 parents.extend([sources_of.len(); 4]);
                 sources_of.push(dividing);
-                for [x, y] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
-                    let place = [2 * place[0] + x, 2 * place[1] + y];
-                    grid.cells.push(Cell { level: level + 1, place, children: None });
-                }
+                grid.halve(next);
             }
             next += 1;
         }
+        grid.balance(most);
         grid
+    }
+
+    fn halve(&mut self, cell: usize) {
+        let Cell { level, place, .. } = self.cells[cell];
+        self.cells[cell].children = Some(self.cells.len() as u32);
+        for [x, y] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+            self.cells.push(Cell { level: level + 1, place: [2 * place[0] + x, 2 * place[1] + y], children: None });
+        }
+    }
+
+    /// Halves leaves beside one of less than half their size: a patch of fine cells in coarse ones is too soft, and flanks that press on it get a
+    /// fifth less.
+    fn balance(&mut self, most: usize) {
+        let mut pending: Vec<usize> = self.leaves().collect();
+        while let Some(cell) = pending.pop().filter(|_| self.cells.len() <= most) {
+            let ([x, y], level) = (self.middle(cell), self.cells[cell].level);
+            let size = self.size.map(|size| size / f64::from(1_u32 << level));
+            for [i, j] in [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]] {
+                loop {
+                    // Beyond the box it is the cell itself.
+                    let other = self.leaf([x + i * size[0], y + j * size[1]]);
+                    if self.cells[other].level + 1 >= level {
+                        break;
+                    }
+                    let children = self.cells.len();
+                    self.halve(other);
+                    pending.extend(children..children + 4);
+                }
+            }
+        }
     }
 
     /// All cells that are not halved.

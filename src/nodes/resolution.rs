@@ -32,7 +32,7 @@ const AT_PIN: f64 = 2.0;
 const AT_MOUTH: f64 = 8.0;
 /// Reach of rims and ligaments, in spacings of the coarser level, that K of a crack nearby asks for.
 pub const RIM_REACH: f64 = 1.5;
-/// Reach of a sharp corner, in spacings of the coarser level: neighbours differ by one level.
+/// Reach of a sharp corner, in spacings of the coarser level: neighbors differ by one level.
 const CORNER_REACH: f64 = 2.5;
 /// Spacings across a ligament.
 const ACROSS_LIGAMENT: f64 = 3.0;

@@ -3,10 +3,11 @@
 use std::f64::consts::PI;
 
 use perilife_base::input::Folder;
+use perilife_base::quadrature::integrate;
 use perilife_growth::case::Case;
 use perilife_growth::predict::tip_factors::{StressIntensityMethod, stress_intensity};
 use perilife_growth::predict::{Prediction, Silent, predict};
-use perilife_growth::record::TipRecord;
+use perilife_growth::record::{StopReason, TipRecord};
 use perilife_nodes::basis::{BasisKind, Enrichment, Value};
 use perilife_nodes::crack::{Tip, TipAxes};
 use perilife_nodes::factors::{TipFactors, integral, read};
@@ -333,4 +334,45 @@ fn a_crack_that_passes_a_hole_does_not_run_into_it_however_few_cycles_are_left()
     let y = y0 + (30.0 - x0) / (x1 - x0) * (y1 - y0);
     println!("{:.0} cycles, y {y:.2} mm, {}", run.curve[beyond].cycles, run.stop);
     assert!((run.curve[beyond].cycles / 1_221_390.0 - 1.0).abs() < 3e-3 && (y - 1.41).abs() < 0.5, "{y} mm");
+}
+
+/// A rate without bound at K_c ends a life there, whatever step meets it: the life is `∫ da / r` over the K of a run by Paris.
+#[test]
+fn rates_without_bound_end_at_k_c() {
+    let run = |law: &str| {
+        let crack = cracks(&[[[5.0, 0.0], [8.0, 0.0]]]);
+        let plate = format!("width_mm = 100\nlength_mm = 200\nholes = [{{ x_mm = 0, y_mm = 0, diameter_mm = 10 }}]\n{crack}");
+        let text = format!(
+            "[specimen]\nkind = \"plate\"\nthickness_mm = 2\n{plate}\n[loading]\nstress_max_mpa = 100\nstress_ratio = 0.1\n\
+             [material]\nyoungs_modulus_gpa = 70\npoisson_ratio = 0.3\n[fatigue]\n{law}"
+        );
+        predict(&case_of(&text, &[METHOD.to_owned()]).unwrap(), &Silent).unwrap()
+    };
+    let rows: Vec<[f64; 2]> = run("paris_c_mm_per_cycle = 1e-8\nparis_m = 3\n[stop]\ncrack_length_mm = 42")
+        .curve
+        .iter()
+        .map(|row| [row.crack_length * 1e3, row.delta_k / 1e6])
+        .collect();
+    let [forman, nasgro] = [
+        "growth_law = \"forman\"\nforman_c_mm_per_cycle = 1e-6\nforman_m = 3\nk_c_mpa_sqrt_m = 60",
+        "growth_law = \"nasgro\"\nnasgro_c_mm_per_cycle = 1e-8\nnasgro_n = 3\nnasgro_p = 0\nnasgro_q = 1\nnasgro_alpha = 2\n\
+         nasgro_smax_over_flow = 0.3\nnasgro_delta_k_0_mpa_sqrt_m = 2\nk_c_mpa_sqrt_m = 60",
+    ]
+    .map(run);
+    for run in [&forman, &nasgro] {
+        let last = run.curve.last().unwrap();
+        assert_eq!(run.stop, StopReason::Toughness);
+        assert!((last.delta_k / 54e6 - 1.0).abs() < 1e-6 && last.cycles.is_finite(), "{} Pa√m", last.delta_k);
+    }
+    // ln K linear between rows; 1/r falls to nothing at (1-R) K_c = 54 MPa√m.
+    let inverse = |k: f64| (54.0 - k).max(0.0) / (1e-6 * k.powi(3));
+    let life: f64 = rows
+        .windows(2)
+        .map(|pair| {
+            let [[a, k], [then, k_then]] = [pair[0], pair[1]];
+            (then - a) * integrate(|x| inverse(k * (k_then / k).powf(x)), 0.0, 1.0, 1e-10).value
+        })
+        .sum();
+    println!("{} cycles, {life} by the integral", forman.life_cycles());
+    assert!((forman.life_cycles() / life - 1.0).abs() < 0.002, "{life}");
 }

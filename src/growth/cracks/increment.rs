@@ -212,7 +212,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         } else {
             step::cycles(step.past, step.rate, rate, growth)
         };
-        let way = (is_smooth && growth > 0.0).then(|| {
+        // A rate without bound at K_c continues no rate before it.
+        let way = (is_smooth && growth > 0.0 && rate.is_finite()).then(|| {
             let is_by_root = self.scales.by_root || step.is_kink;
             let rise = (step.root * step.root + growth).sqrt() - step.root;
             let weight = if is_by_root { [step.root, rise] } else { [1.0, 0.0] };
