@@ -23,8 +23,8 @@ use perilife_plate::specimen::{Point, Specimen};
 const ROUND_OFF: f64 = 1e-3;
 /// The same where contact is sought.
 const ROUND_OFF_IN_CONTACT: f64 = 1e-9;
-/// Turns of the active set at the most.
-const TURNS: usize = 200;
+/// Turns of the active set at the most, over the number of segments: exchanged one by one nearly all of them have been wrong once.
+const TURNS: usize = 10;
 /// Columns that are solved for together.
 const TOGETHER: usize = 16;
 /// Turns without fewer wrong segments before they are exchanged one by one.
@@ -142,7 +142,8 @@ pub fn press(Flanks(segments): &Flanks, factor: &Factor, y: &[f64], u: &[f64]) -
     let mut compliance = Compliance::new(segments, factor, y.len());
     let mut active: Vec<usize> = (0..segments.len()).filter(|&k| free[k] < 0.0).collect();
     let (mut fewest, mut chances) = (usize::MAX, CHANCES);
-    for _ in 0..TURNS {
+    let turns = TURNS * segments.len().max(20);
+    for _ in 0..turns {
         let forces = compliance.forces(&active, &free)?;
         let mut sum = y.to_vec();
         for (&k, force) in active.iter().zip(&forces) {
@@ -179,7 +180,7 @@ pub fn press(Flanks(segments): &Flanks, factor: &Factor, y: &[f64], u: &[f64]) -
         }
     }
     Err(Error::Mechanics(format!(
-        "crack-face contact did not converge in {TURNS} iterations; change model.tolerance_percent to move the nodes"
+        "crack-face contact did not converge in {turns} iterations; change model.tolerance_percent to move the nodes"
     )))
 }
 
