@@ -294,7 +294,7 @@ fn add(sum: &mut Point, factor: f64, vector: &Point) {
 pub fn singular(at: Point, radius: f64) -> Error {
     Error::Mechanics(format!(
         "too few nodes near {} for the basis (radii of influence up to {:.4} mm); increase model.influence_radius or \
-         model.nodes",
+         model.nodes, or give one crack where two meet at a small angle",
         place_mm(at),
         radius / MM
     ))
