@@ -267,7 +267,7 @@ fn a_formula_of_residual_stress_has_the_units_of_its_key() {
         let (said, result) = predicted(folder, &format!("{file} --units us"));
         let life = result["life_cycles"].as_f64().unwrap();
         // 580 776 cycles with `tolerance_percent = 0.5`.
-        is_near(&result["life_cycles"], 580_776.0, 2e-3, form);
+        is_near(&result["life_cycles"], 580_776.0, 1e-3, form);
         is_near(&result["life_cycles"], *first.get_or_insert(life), if form.contains("file") { 1e-3 } else { 1e-5 }, form);
         assert!(!said.contains("error:"), "{said}");
         fs::remove_dir_all(folder.join("out")).unwrap();
